@@ -1,0 +1,70 @@
+"""The `tilenca` command: finds the subcommand, runs it, and turns failures into one line and an exit status.
+
+A subcommand is a module with a one-line docstring (its help), `add_arguments(parser)` and `run(args) -> int`.
+Only the chosen module is imported, so that commands which need no torch never wait for it.
+"""
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+from tilenca import __version__
+from tilenca.errors import TilencaError
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    "train": ("tilenca.train", "train a model on the shapes of a file"),
+    "evaluate": ("tilenca.evaluate", "measure how well a model does on shapes"),
+    "export": ("tilenca.export", "render a model into the firmware's C++ files"),
+    "emulate": ("tilenca.emulate", "run the firmware image on one emulated board per tile"),
+    "devices": ("tilenca.devices", "list the tiles found on USB"),
+    "flash": ("tilenca.flash", "build the firmware and program all tiles side by side"),
+    "monitor": ("tilenca.monitor", "watch the telemetry of all tiles"),
+}
+
+INTERRUPTED = 130
+
+
+def build_parser(command: str | None = None) -> argparse.ArgumentParser:
+    """The command line's grammar; only `command`'s own arguments are loaded."""
+    parser = argparse.ArgumentParser(
+        prog="tilenca",
+        description="Tiles that know which shape they form: train, export, emulate, flash and watch them.",
+        epilog="Exit status: 0 all well, 1 a check failed, 2 usage, 3 no device, 4 build or export failed, "
+        "130 interrupted.",
+    )
+    parser.add_argument("--version", action="version", version=f"tilenca {__version__}")
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, (module, summary) in COMMANDS.items():
+        subparser = subparsers.add_parser(
+            name, help=summary, description=f"{summary[0].upper()}{summary[1:]}."
+        )
+        if name == command:
+            importlib.import_module(module).add_arguments(subparser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one command; returns its exit status (see `--help`)."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    command = next((word for word in arguments if not word.startswith("-")), None)
+    try:
+        args = build_parser(command).parse_args(arguments)
+        status = importlib.import_module(COMMANDS[args.command][0]).run(args)
+        sys.stdout.flush()
+        return int(status)
+    except TilencaError as error:
+        print(f"tilenca: {error}", file=sys.stderr)
+        return error.exit_status
+    except KeyboardInterrupt:
+        print("tilenca: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of our output (head, less) went away: nothing is wrong, and nothing more can be said.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

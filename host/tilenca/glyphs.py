@@ -1,0 +1,78 @@
+"""What a tile can show: characters on a 7-segment digit, and the colour of each class.
+
+A glyph is a bit mask of segments, bit 0 = a ... bit 6 = g, bit 7 = dp:
+
+     aaa
+    f   b
+     ggg
+    e   c
+     ddd  dp
+"""
+
+SEGMENT_NAMES = "abcdefg"
+DECIMAL_POINT = 1 << 7
+BLANK = 0
+
+_LIT: dict[str, str] = {
+    "0": "abcdef", "1": "bc", "2": "abdeg", "3": "abcdg", "4": "bcfg",
+    "5": "acdfg", "6": "acdefg", "7": "abc", "8": "abcdefg", "9": "abcdfg",
+    "A": "abcefg", "b": "cdefg", "C": "adef", "c": "deg", "d": "bcdeg", "E": "adefg",
+    "F": "aefg", "G": "acdef", "H": "bcefg", "h": "cefg", "I": "ef", "J": "bcde",
+    "K": "acefg", "L": "def", "M": "aceg", "n": "ceg", "o": "cdeg", "P": "abefg",
+    "q": "abcfg", "r": "eg", "S": "acdfg", "t": "defg", "U": "bcdef", "u": "cde",
+    "V": "bdf", "W": "bdfg", "X": "bceg", "Y": "bcdfg", "Z": "abdeg", "-": "g", "_": "d", "=": "dg",
+}  # fmt: skip
+
+GLYPHS: dict[str, int] = {
+    label: sum(1 << SEGMENT_NAMES.index(name) for name in lit) for label, lit in _LIT.items()
+}
+
+# Duty of 255 per colour, tuned by the paper's authors to the brightness of their LEDs and resistors.
+# In order: white, green, blue, orange, aquamarine, purple, yellow, red, pink, pale.
+_PAPER_COLOURS: tuple[tuple[int, int, int], ...] = (
+    (20, 20, 20), (0, 20, 0), (0, 0, 30), (70, 25, 0), (5, 50, 30),
+    (40, 12, 60), (50, 50, 0), (55, 0, 0), (75, 25, 30), (25, 15, 15),
+)  # fmt: skip
+
+
+def colour_of_class(index: int) -> tuple[int, int, int]:
+    """RGB duty (0..255 each) of a class; the paper's ten, then the same ones at a third, then at a ninth."""
+    red, green, blue = _PAPER_COLOURS[index % len(_PAPER_COLOURS)]
+    dim = 3 ** (index // len(_PAPER_COLOURS))
+    return (-(-red // dim), -(-green // dim), -(-blue // dim))
+
+
+def glyph(label: str) -> int:
+    """The segments that show `label`.
+
+    Raises:
+        KeyError: a 7-segment digit has no such character.
+    """
+    return GLYPHS[label]
+
+
+def label_of_glyph(segments: int, known: tuple[str, ...] = ()) -> str:
+    """The character that lit `segments` show; "" for a dark display, "?" for no known character.
+
+    `known` labels come first: "5" and "S" light the same segments.
+    """
+    lit = segments & ~DECIMAL_POINT
+    if lit == BLANK:
+        return ""
+    for label in (*known, *GLYPHS):
+        if GLYPHS.get(label) == lit:
+            return label
+    return "?"
+
+
+def draw(segments: int) -> tuple[str, str, str]:
+    """Three text rows of three characters that look like the lit digit."""
+
+    def lit(name: str, mark: str) -> str:
+        return mark if segments >> SEGMENT_NAMES.index(name) & 1 else " "
+
+    return (
+        f" {lit('a', '_')} ",
+        f"{lit('f', '|')}{lit('g', '_')}{lit('b', '|')}",
+        f"{lit('e', '|')}{lit('d', '_')}{lit('c', '|')}",
+    )
