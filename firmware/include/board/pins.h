@@ -1,7 +1,7 @@
 // The one pin map of the tile: facts of the authors' board (Project Cube PCB v1.0, docs/HARDWARE.md).
 //
-// Pure data, so that the emulator's tile is wired from the same table as the firmware. AVR port letter and bit;
-// the Arduino pin number stands beside each.
+// Pure data, so that the emulator's tile is wired from the same table as the firmware. AVR port letter and
+// bit; the Arduino pin number stands beside each.
 #pragma once
 
 #include <stdint.h>
@@ -35,6 +35,9 @@ constexpr Pin kSouthTx = {'K', 7};
 // The USART of each side in the order N E S W; SOUTH has none (0 is the host's USB).
 constexpr uint8_t kSideUsart[4] = {2, 1, 0, 3};
 constexpr uint8_t kHostUsart = 0;
+
+// The receiving pin of each side, which floats while nobody is there: RXD2, RXD1, A14, RXD3.
+constexpr Pin kSideRx[4] = {{'H', 0}, {'D', 2}, kSouthRx, {'J', 0}};
 
 } // namespace board
 } // namespace tilenca

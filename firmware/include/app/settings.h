@@ -1,0 +1,22 @@
+// What a tile can be told once and keeps in EEPROM: docs/PROTOCOL.md section 5. Pure bytes, no EEPROM here.
+#pragma once
+
+#include <stdint.h>
+
+namespace tilenca {
+
+constexpr uint8_t kSettingsSize = 10;
+constexpr uint8_t kSettingsVersion = 1;
+constexpr uint16_t kMinPeriodMs = 10;
+constexpr uint16_t kMaxPeriodMs = 10000;
+
+struct Settings {
+    uint8_t tile_id;    // 0: not set
+    uint16_t period_ms; // from update to update
+    uint16_t updates;   // then stop; 0: for ever
+};
+
+// Reads a block as it lies in EEPROM. False, and `settings` as it was, if anything about it is not right.
+bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings);
+
+} // namespace tilenca

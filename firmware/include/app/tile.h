@@ -1,0 +1,73 @@
+// A whole tile without its hardware: bytes and milliseconds come in, frames and what to show go out.
+//
+// Everything happens inside the calls below, so that any number of tiles live in one process and a test owns
+// the clock.
+#pragma once
+
+#include <stdint.h>
+
+#include "app/settings.h"
+#include "core/cell.h"
+#include "core/link.h"
+#include "core/model.h"
+#include "core/side.h"
+
+namespace tilenca {
+
+class Tile {
+  public:
+    static constexpr uint8_t kNothing = 0xFF;
+
+    // Boots: the cell is the seed, says so on all sides, and updates first one period from now. The model must
+    // outlive the tile.
+    Tile(const Model& model, const Settings& settings, uint32_t now_ms);
+
+    // Starts the classification anew from the seed. The links and the phase of the updates stay.
+    void restart();
+
+    // Takes the next byte from the line on this side.
+    void receive(Side side, uint8_t byte, uint32_t now_ms);
+
+    // Does at most one slice of work, about a millisecond on the chip. True when this ended a period: the tile
+    // has new frames for its neighbours, after an update or, once stopped, without one.
+    bool tick(uint32_t now_ms);
+
+    // Whether an update is under way: tick again soon.
+    bool busy() const { return cell_.updating(); }
+
+    // Whether there is a frame for this side that was not taken yet, and takes it (at most kMaxFrame bytes).
+    // What is not taken in time is replaced by the next state: the latest value wins.
+    bool has_frame(Side side) const { return untold_ & mask_of(side); }
+    uint8_t take_frame(Side side, uint8_t* wire);
+
+    // The class to show, or kNothing before the first update.
+    uint8_t shown() const { return shown_; }
+
+    uint32_t updates() const { return updates_; }
+    const Link& link(Side side) const { return links_[index_of(side)]; }
+    const int8_t* message() const { return cell_.message(); }
+    const Model& model() const { return model_; }
+    const Settings& settings() const { return settings_; }
+
+    // When the last period ended by the tile's schedule, which a late tick() does not move.
+    uint32_t period_ended_ms() const { return due_ms_ - settings_.period_ms; }
+
+  private:
+    static uint8_t mask_of(Side side) { return static_cast<uint8_t>(1 << index_of(side)); }
+
+    bool period_ends(uint32_t now_ms);
+    bool stopped() const { return settings_.updates != 0 && updates_ >= settings_.updates; }
+    void begin_update();
+    void tell() { untold_ = (1 << kSides) - 1; }
+
+    const Model& model_;
+    Settings settings_;
+    Cell cell_;
+    Link links_[kSides];
+    uint32_t due_ms_; // end of the current period
+    uint32_t updates_ = 0;
+    uint8_t shown_ = kNothing;
+    uint8_t untold_ = 0; // one bit per side that has not got the current state
+};
+
+} // namespace tilenca

@@ -1,0 +1,24 @@
+// What a person sees of a tile and can press: digit, colour, debug LEDs, button.
+#pragma once
+
+#include <stdint.h>
+
+namespace tilenca {
+namespace board {
+
+// Call it after links_begin(): red shares timer 1 with the south link.
+void face_begin();
+
+// Bit 0 = segment a ... bit 6 = g, bit 7 = dp; 0 is dark.
+void show_segments(uint8_t segments);
+
+// Duty of 255 each; 0 is dark.
+void show_colour(uint8_t red, uint8_t green, uint8_t blue);
+
+// One of the four debug LEDs, in the order N E S W.
+void show_led(uint8_t index, bool lit);
+
+bool button_closed();
+
+} // namespace board
+} // namespace tilenca

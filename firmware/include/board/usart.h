@@ -1,0 +1,23 @@
+// The four hardware UARTs, by number. Short interrupts of our own instead of Arduino's Serial objects: whatever
+// runs while the south link's line changes makes that edge's time stamp late.
+#pragma once
+
+#include <stdint.h>
+
+namespace tilenca {
+namespace board {
+
+// 8N1. Reception is on for the three links; the host's USART only sends.
+void usart_begin(uint8_t number, uint32_t baud);
+
+// The next byte received, if any.
+bool usart_read(uint8_t number, uint8_t* byte);
+
+// Queues all of the bytes or, if there is no room for all, none.
+bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
+
+// Whether everything queued has gone to the line.
+bool usart_idle(uint8_t number);
+
+} // namespace board
+} // namespace tilenca

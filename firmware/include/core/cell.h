@@ -1,0 +1,48 @@
+// One cell of the automaton: it perceives its four neighbours, then updates its state.
+#pragma once
+
+#include <stdint.h>
+
+#include "core/network.h"
+#include "core/side.h"
+
+namespace tilenca {
+
+class Cell {
+  public:
+    // The network must outlive the cell. The cell starts as the seed.
+    explicit Cell(const Network& network);
+
+    // The state every cell starts from: 1.0 in channel 0, else zero. Gives up an update in progress.
+    void seed();
+
+    // Takes in the own message and the neighbours' (C values each, nullptr: absent, which reads as zeros), and
+    // begins an update with them. The messages are copied.
+    void perceive(const int8_t* const (&neighbours)[kSides]);
+
+    // One slice of the update that perceive() began; true when this completed it.
+    bool update_slice();
+
+    bool updating() const { return !forward_.done(); }
+
+    // The message the neighbours read, C values; that of the last completed update while one is in progress.
+    const int8_t* message() const { return inputs_; }
+
+    // C stored values; half old, half new while an update is in progress.
+    const int16_t* state() const { return state_; }
+
+    uint8_t channels() const { return network_.channels(); }
+
+    // The class with the greatest stored score among the last `classes` channels, the lowest among equals.
+    uint8_t best_class(uint8_t classes) const;
+
+  private:
+    void tell();
+
+    const Network& network_;
+    Forward forward_;
+    int16_t state_[kMaxChannels];
+    int8_t inputs_[kMaxInputs]; // the own message lies where the network reads it
+};
+
+} // namespace tilenca

@@ -1,0 +1,85 @@
+// The network of a cell in integers: docs/PROTOCOL.md section 4, bit for bit.
+//
+// Works in slices, so that a tile can look after its links between them, and on weights of any size up to the
+// limits below, so that the host's simulator runs this very code.
+#pragma once
+
+#include <stdint.h>
+
+#include "core/flash.h"
+
+namespace tilenca {
+
+constexpr uint8_t kTaps = 5; // own message, then those of N, E, S, W
+constexpr uint8_t kMaxChannels = 51;
+constexpr uint8_t kMaxHidden = 127;
+constexpr uint8_t kMaxInputs = kTaps * kMaxChannels; // 255: counters fit a uint8_t
+
+constexpr int16_t kMessageMax = 127;
+constexpr uint8_t kMessageShift = 7; // stored state 2^-13, message 2^-6
+constexpr int16_t kStateMax = kMessageMax << kMessageShift;
+constexpr uint8_t kHiddenShift = 6; // accumulator 2^-12, activation 2^-6
+constexpr int8_t kHiddenMax = 127;
+
+// One dense layer: `outputs` rows of `inputs` int8 weights each, and an int16 bias per row.
+struct Layer {
+    uint8_t inputs;
+    uint8_t outputs;
+    FlashView<int8_t> weights;
+    FlashView<int16_t> biases;
+};
+
+// 5 C -> H1 -> H2 -> C. A view: the weights belong to the exported model (or, on the host, to the caller).
+struct Network {
+    Layer hidden1;
+    Layer hidden2;
+    Layer output;
+
+    uint8_t channels() const { return output.outputs; }
+};
+
+// What a stored state value tells the neighbours: an int8 in -127..127, with an exact zero.
+inline int8_t message_of(int16_t state) {
+    return static_cast<int8_t>((state + (1 << (kMessageShift - 1))) >> kMessageShift);
+}
+
+// Outputs [from, to) of a hidden layer, each 0..127.
+void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs);
+
+// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax.
+void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state);
+
+// One update of one cell, a slice at a time.
+class Forward {
+  public:
+    explicit Forward(const Network& network) : network_(network) {}
+
+    // Starts an update: `inputs` (5 C messages) and `state` (C values, changed in place) stay the caller's and
+    // must live until done().
+    void begin(const int8_t* inputs, int16_t* state);
+
+    // Computes at most kOutputsPerSlice outputs, about a millisecond on the chip. No effect when done.
+    void step();
+
+    // Gives the update up; the state may be half old, half new.
+    void stop() { stage_ = Stage::Done; }
+
+    bool done() const { return stage_ == Stage::Done; }
+
+  private:
+    enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
+    static constexpr uint8_t kOutputsPerSlice = 8;
+
+    void advance(const Layer& layer, Stage next);
+
+    const Network& network_;
+    const int8_t* inputs_ = nullptr;
+    int16_t* state_ = nullptr;
+    Stage stage_ = Stage::Done;
+    uint8_t from_ = 0; // first output of the current layer that is not computed yet
+    uint8_t to_ = 0;   // end of the current slice
+    int8_t hidden1_[kMaxHidden];
+    int8_t hidden2_[kMaxHidden];
+};
+
+} // namespace tilenca

@@ -1,0 +1,244 @@
+"""Renders a model into the firmware's C++ files.
+
+Each file's first line says what it was rendered from and holds a checksum of all that follows, so that a
+change made by hand is noticed before it is overwritten.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from numpy.typing import NDArray
+
+from tilenca import paths
+from tilenca.errors import BuildError, TilencaError
+from tilenca.glyphs import GLYPHS, colour_of_class
+from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Model, load_model
+
+# Template and, below the firmware's folder, the file it renders.
+TEMPLATES = {"model.h.j2": Path("include/model/model.h"), "model.cpp.j2": Path("src/model/model.cpp")}
+# LPM reaches the low 64 KiB of flash; the vectors and other constants want their part of it.
+MAX_FLASH_BYTES = 60 * 1024
+# The narrowest accumulator of any implementation: 24 bits, signed.
+ACCUMULATOR_MAX = 2**23 - 1
+ACTIVATION_MAX = 127
+LOOK_BYTES = 5
+LINE_WIDTH = 100
+HEADER = re.compile(
+    r"// Rendered by `tilenca export` from model ([0-9A-F]{4}); do not edit. Body ([0-9a-f]{16})\n"
+)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a class looks on a tile: twin of `Look` in firmware/include/core/model.h."""
+
+    label: str
+    segments: int
+    colour: tuple[int, int, int]
+
+
+def looks_of(labels: tuple[str, ...]) -> list[Look]:
+    """Glyph and colour of every class; a decimal digit has its own colour wherever it stands."""
+    indices = [int(label) if label in "0123456789" else index for index, label in enumerate(labels)]
+    return [
+        Look(label, GLYPHS[label], colour_of_class(index))
+        for label, index in zip(labels, indices, strict=True)
+    ]
+
+
+def flash_bytes(model: Model) -> int:
+    """Bytes of flash that the model's arrays take."""
+    return sum(array.nbytes for array in model.integer.values()) + LOOK_BYTES * len(model.labels)
+
+
+def accumulator_bound(weights: NDArray[np.int8], biases: NDArray[np.int16]) -> int:
+    """Largest size an accumulator of this layer can reach, whatever its inputs.
+
+    Args:
+        weights: (outputs, inputs) int8.
+        biases: (outputs,) int16.
+    """
+    rows = np.abs(weights.astype(np.int64)).sum(axis=1) * ACTIVATION_MAX + np.abs(biases.astype(np.int64))
+    return int(rows.max())
+
+
+def check_fits(model: Model) -> None:
+    """Refuses a model that the firmware cannot run.
+
+    The firmware's buffers in SRAM are sized for the greatest widths: no model needs more.
+
+    Raises:
+        BuildError: too wide, too large, a weight of -128, or an accumulator that could wrap.
+    """
+    size = model.dimensions
+    if size.channels > MAX_CHANNELS or max(size.hidden1, size.hidden2) > MAX_WIDTH:
+        raise BuildError(
+            f"model {model.model_id:04X}: {size.channels} channels and hidden layers of {size.hidden1} and "
+            f"{size.hidden2}; the firmware has room for {MAX_CHANNELS} and {MAX_WIDTH}, train a narrower one"
+        )
+    if flash_bytes(model) > MAX_FLASH_BYTES:
+        raise BuildError(
+            f"model {model.model_id:04X}: {flash_bytes(model)} bytes of weights, the firmware has room for "
+            f"{MAX_FLASH_BYTES}; train with a smaller --hidden"
+        )
+    for layer in (1, 2, 3):
+        weights, biases = model.integer[f"w{layer}"], model.integer[f"b{layer}"]
+        if weights.min() < -ACTIVATION_MAX:
+            raise BuildError(
+                f"model {model.model_id:04X}: w{layer} has a weight of -128; quantise to -127..127"
+            )
+        bound = accumulator_bound(weights, biases)
+        if bound > ACCUMULATOR_MAX:
+            raise BuildError(
+                f"model {model.model_id:04X}: layer {layer} could add up to {bound}, beyond the 24-bit "
+                f"{ACCUMULATOR_MAX}; train with more weight decay or fewer inputs"
+            )
+
+
+def _lines(values: NDArray[Any]) -> Iterator[str]:
+    """The values of one array as lines of C++, row by row, none wider than LINE_WIDTH."""
+    for row in np.atleast_2d(values):
+        line = ""
+        for word in (f"{value}," for value in row):
+            if line and len(line) + 1 + len(word) > LINE_WIDTH:
+                yield line
+                line = ""
+            line = f"{line} {word}" if line else word
+        yield line
+
+
+def render(model: Model) -> dict[Path, str]:
+    """The model's C++ files: path below the firmware's folder -> whole text; equal models give equal text."""
+    environment = Environment(
+        loader=PackageLoader("tilenca"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,  # C++, not HTML
+    )
+    units = {"w1": "2^-6", "w2": "2^-6", "w3": "2^-7", "b1": "2^-12", "b2": "2^-12", "b3": "2^-13"}
+    arrays = [
+        {
+            "name": f"k{name.upper()}",
+            "type": "int8_t" if name.startswith("w") else "int16_t",
+            "meaning": f"[{']['.join(map(str, shape))}], unit {units[name]}",
+            "lines": list(_lines(model.integer[name])),
+        }
+        for name, shape in model.dimensions.shapes().items()
+    ]
+    context = {"model_id": model.model_id, "size": model.dimensions, "arrays": arrays}
+    files = {}
+    for template, path in TEMPLATES.items():
+        body = environment.get_template(template).render(context, looks=looks_of(model.labels))
+        files[path] = _header(model.model_id, body) + body
+    return files
+
+
+def _header(model_id: int, body: str) -> str:
+    digest = hashlib.sha256(body.encode()).hexdigest()[:16]
+    return f"// Rendered by `tilenca export` from model {model_id:04X}; do not edit. Body {digest}\n"
+
+
+def _refuse_foreign(path: Path) -> None:
+    """Raises BuildError if `path` holds anything that `export` did not write."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return
+    except (OSError, UnicodeDecodeError) as error:
+        raise BuildError(f"{path}: cannot be read ({error}); move it away or pass --force") from error
+    header = HEADER.match(text)
+    if header is None:
+        raise BuildError(f"{path}: was not rendered by tilenca export; move it away or pass --force")
+    if _header(int(header[1], 16), text[header.end() :]) != header[0]:
+        raise BuildError(f"{path}: was edited by hand; move it away or pass --force")
+
+
+def write_files(out: Path, files: dict[Path, str], force: bool = False) -> None:
+    """Writes rendered files below `out`: all of them or, if anything is in the way, none; never half a file.
+
+    A file that is already as it should be is left alone, so that nothing is compiled anew for it.
+
+    Raises:
+        BuildError: no such folder, not writable, or a file with other content is in the way.
+    """
+    if not out.is_dir():
+        raise BuildError(f"{out}: no such folder; give the firmware's folder to --out")
+    stale = {out / path: text for path, text in files.items() if _read(out / path) != text}
+    if not force:
+        for path in stale:
+            _refuse_foreign(path)
+    try:
+        with ExitStack() as leftovers:
+            ready = []
+            for path, text in stale.items():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                temporary = path.with_name(f".{path.name}.{os.getpid()}")
+                leftovers.callback(temporary.unlink, missing_ok=True)
+                temporary.write_text(text, encoding="utf-8")
+                ready.append((temporary, path))
+            for temporary, path in ready:
+                temporary.replace(path)
+    except OSError as error:
+        where = error.filename or out
+        raise BuildError(f"{where}: {error.strerror}; make {out} writable or give another --out") from error
+
+
+def _read(path: Path) -> str | None:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the arguments of `tilenca export`."""
+    parser.add_argument(
+        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="the trained model"
+    )
+    parser.add_argument(
+        "--out", type=Path, default=paths.FIRMWARE, metavar="DIR", help="the firmware's folder to render into"
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not current")
+    parser.add_argument("--force", action="store_true", help="overwrite files that were edited by hand")
+    parser.add_argument("--json", action="store_true", help="print one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Renders, or checks, the files; prints what was done."""
+    model = load_model(args.model)
+    check_fits(model)
+    files = render(model)
+    differing = [str(args.out / path) for path, text in files.items() if _read(args.out / path) != text]
+    if not args.check:
+        write_files(args.out, files, args.force)
+    report = {
+        "files": [str(args.out / path) for path in files],
+        "flash_bytes": flash_bytes(model),
+        "model_id": f"{model.model_id:04X}",
+        "differing" if args.check else "written": differing,
+    }
+    if args.json:
+        print(json.dumps(report))
+    if args.check and differing:
+        names = ", ".join(differing)
+        raise TilencaError(
+            f"{names}: not what {args.model} renders to; run: tilenca export --model {args.model}"
+        )
+    if not args.json:
+        state = "current" if args.check or not differing else "written"
+        for path in files:
+            print(f"{args.out / path}: {state}")
+        print(f"model {report['model_id']}, {report['flash_bytes']} bytes of flash")
+    return 0

@@ -1,0 +1,231 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../support.h"
+#include "core/edge_receiver.h"
+#include "core/toggles.h"
+
+using namespace tilenca;
+using test::Numbers;
+
+namespace {
+
+constexpr double kBitCycles = 16e6 / 38400;
+constexpr double kByteCycles = 10 * kBitCycles;
+
+struct Edge {
+    double cycle;
+    bool level;
+};
+
+// What a sender puts on the line, beginning and ending idle.
+class Line {
+  public:
+    explicit Line(double start_cycle, double bit_cycles = kBitCycles) : cycle(start_cycle), bit(bit_cycles) {}
+
+    void send(uint8_t byte) {
+        drive(false);
+        for (int i = 0; i < 8; ++i) {
+            drive(byte >> i & 1);
+        }
+        drive(true);
+    }
+
+    void pause(double cycles) { cycle += cycles; }
+
+    std::vector<Edge> edges;
+    double cycle;
+    double bit;
+
+  private:
+    void drive(bool level) {
+        if (level != level_) {
+            edges.push_back({cycle, level});
+            level_ = level;
+        }
+        cycle += bit;
+    }
+
+    bool level_ = true;
+};
+
+uint16_t count_at(double cycle) { return static_cast<uint16_t>(static_cast<uint64_t>(cycle) / 8); }
+
+// Receives a line as the board does: every so often the main loop comes by, takes what edges there are, and polls.
+std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, double late_cycles = 0,
+                             double loop_cycles = 16000, uint32_t seed = 1) {
+    Numbers numbers(seed);
+    EdgeReceiver receiver(52);
+    std::vector<uint8_t> bytes;
+    const auto take = [&](int16_t result) {
+        if (result != EdgeReceiver::kNoByte) {
+            bytes.push_back(static_cast<uint8_t>(result));
+        }
+    };
+    size_t next = 0;
+    for (double now = 0; now < end_cycle + 4 * kByteCycles + loop_cycles; now += loop_cycles) {
+        while (next < edges.size() && edges[next].cycle <= now) {
+            const double stamped = edges[next].cycle + late_cycles * numbers.draw(0, 1000) / 1000;
+            take(receiver.edge(static_cast<uint16_t>((count_at(stamped) & ~1) | edges[next].level)));
+            ++next;
+        }
+        take(receiver.poll(count_at(now)));
+    }
+    return bytes;
+}
+
+std::vector<Edge> edges_of_toggles(const uint8_t* toggles, uint8_t size) {
+    std::vector<Edge> edges;
+    bool level = true;
+    for (int bit = 0; bit < size * 8; ++bit) {
+        if (toggles[bit / 8] << bit % 8 & 0x80) {
+            level = !level;
+            edges.push_back({1000 + bit * kBitCycles, level});
+        }
+    }
+    return edges;
+}
+
+} // namespace
+
+TEST_CASE("every byte comes through, one after another and with pauses") {
+    for (double pause : {0.0, 100.0, 5000.0}) {
+        CAPTURE(pause);
+        Line line(1000);
+        std::vector<uint8_t> sent;
+        for (int byte = 0; byte < 256; ++byte) {
+            line.send(static_cast<uint8_t>(byte));
+            line.pause(pause);
+            sent.push_back(static_cast<uint8_t>(byte));
+        }
+        CHECK(receive(line.edges, line.cycle) == sent);
+    }
+}
+
+TEST_CASE("a clock 2 % off, or edges stamped 150 cycles late at random, lose nothing") {
+    Numbers numbers(3);
+    const auto sent = numbers.draw_all<uint8_t>(3000, 0, 255);
+    for (double error : {-0.02, 0.0, 0.02}) {
+        CAPTURE(error);
+        Line line(1000, kBitCycles * (1 + error));
+        for (uint8_t byte : sent) {
+            line.send(byte);
+        }
+        CHECK(receive(line.edges, line.cycle) == sent);
+    }
+    for (double error : {-0.003, 0.003}) {
+        CAPTURE(error);
+        Line line(1000, kBitCycles * (1 + error));
+        for (uint8_t byte : sent) {
+            line.send(byte);
+        }
+        CHECK(receive(line.edges, line.cycle, 150) == sent);
+    }
+}
+
+TEST_CASE("silence of any length, turns of the timer included, changes nothing") {
+    for (double turns : {0.4, 0.5, 0.9, 0.99999, 1.0, 1.00001, 1.5, 3.0, 100.25}) {
+        CAPTURE(turns);
+        Line line(1000);
+        line.send(0xA5);
+        line.pause(turns * 65536 * 8);
+        line.send(0x5A);
+        line.send(0xFF);
+        CHECK(receive(line.edges, line.cycle) == std::vector<uint8_t>{0xA5, 0x5A, 0xFF});
+    }
+}
+
+TEST_CASE("a byte whose end has no edge is complete as soon as its stop bit is half over") {
+    EdgeReceiver receiver(52);
+    CHECK(receiver.edge(1000 & ~1) == EdgeReceiver::kNoByte); // start bit of 0xFF; the line rises after it
+    CHECK(receiver.edge((1052 & ~1) | 1) == EdgeReceiver::kNoByte);
+    CHECK(receiver.poll(1000 + 9 * 52) == EdgeReceiver::kNoByte);
+    CHECK(receiver.poll(1000 + 9 * 52 + 27) == 0xFF);
+    CHECK(receiver.poll(1000 + 20 * 52) == EdgeReceiver::kNoByte);
+}
+
+TEST_CASE("after a missed edge the next byte behind a pause is right") {
+    Line line(1000);
+    line.send(0x35);
+    const size_t edges_of_first = line.edges.size();
+    line.pause(kByteCycles);
+    line.send(0xC3);
+    for (size_t missed = 0; missed < edges_of_first; ++missed) {
+        CAPTURE(missed);
+        std::vector<Edge> edges = line.edges;
+        edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(missed));
+        const auto bytes = receive(edges, line.cycle);
+        REQUIRE_FALSE(bytes.empty());
+        CHECK(bytes.back() == 0xC3);
+    }
+}
+
+TEST_CASE("a glitch shorter than half a bit is no start bit") {
+    Line line(20000);
+    line.send(0x42);
+    std::vector<Edge> edges = {{1000, false}, {1150, true}};
+    edges.insert(edges.end(), line.edges.begin(), line.edges.end());
+    CHECK(receive(edges, line.cycle) == std::vector<uint8_t>{0x42});
+}
+
+TEST_CASE("a line stuck low says nothing, and speaks again when it is let go") {
+    Line line(2000000);
+    line.send(0x42);
+    std::vector<Edge> edges = {{1000, false}, {1900000, true}};
+    CHECK(receive(edges, 1900000).empty());
+    edges.insert(edges.end(), line.edges.begin(), line.edges.end());
+    CHECK(receive(edges, line.cycle) == std::vector<uint8_t>{0x42});
+}
+
+TEST_CASE("noise never blocks what comes after it") {
+    for (uint32_t seed = 1; seed <= 200; ++seed) {
+        CAPTURE(seed);
+        Numbers numbers(seed);
+        std::vector<Edge> edges;
+        double cycle = 1000;
+        for (int i = 0; i < 300; ++i) {
+            cycle += numbers.draw(1, 3000);
+            edges.push_back({cycle, numbers.chance(50)}); // edges were missed, levels repeat
+        }
+        edges.push_back({cycle + 10, true});
+        Line line(cycle + 2 * kByteCycles);
+        line.send(0x00);
+        line.send(0x99);
+        edges.insert(edges.end(), line.edges.begin(), line.edges.end());
+        const auto bytes = receive(edges, line.cycle);
+        REQUIRE(bytes.size() >= 2);
+        CHECK(bytes[bytes.size() - 2] == 0x00);
+        CHECK(bytes.back() == 0x99);
+    }
+}
+
+TEST_CASE("the bytes do not depend on how often the main loop comes by") {
+    Numbers numbers(5);
+    const auto sent = numbers.draw_all<uint8_t>(200, 0, 255);
+    Line line(1000);
+    for (uint8_t byte : sent) {
+        line.send(byte);
+        line.pause(numbers.draw(0, 3) * 10000);
+    }
+    for (double loop_cycles : {100.0, 1700.0, 16000.0, 100000.0}) {
+        CAPTURE(loop_cycles);
+        CHECK(receive(line.edges, line.cycle, 40, loop_cycles) == sent);
+    }
+}
+
+TEST_CASE("what the toggles send is what was to be sent") {
+    Numbers numbers(6);
+    for (int size = 1; size <= kMaxFrame; ++size) {
+        CAPTURE(size);
+        const auto sent = numbers.draw_all<uint8_t>(static_cast<size_t>(size), 0, 255);
+        uint8_t toggles[kMaxToggleBytes];
+        const uint8_t written = toggles_of(sent.data(), static_cast<uint8_t>(size), toggles);
+        CHECK(written == (size * 10 + 7) / 8);
+        const auto edges = edges_of_toggles(toggles, written);
+        CHECK(edges.size() % 2 == 0); // the line ends high
+        CHECK(receive(edges, 1000 + size * kByteCycles) == sent);
+    }
+}

@@ -1,0 +1,85 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <string.h>
+
+#include "../support.h"
+#include "app/button.h"
+#include "app/settings.h"
+
+using namespace tilenca;
+
+namespace {
+
+struct SettingsCase {
+    const char* name;
+    const char* block;
+    const char* meaning;
+};
+
+const SettingsCase kCases[] = {
+#define CASE(name, block, meaning) {name, block, meaning},
+#include "settings.inc"
+#undef CASE
+};
+
+std::string meaning_of(const std::vector<uint8_t>& bytes) {
+    uint8_t block[kSettingsSize];
+    REQUIRE(bytes.size() == sizeof block);
+    memcpy(block, bytes.data(), sizeof block);
+    Settings settings = {99, 9999, 999};
+    if (!parse_settings(block, &settings)) {
+        CHECK(settings.tile_id == 99);
+        CHECK(settings.period_ms == 9999);
+        CHECK(settings.updates == 999);
+        return "ignored";
+    }
+    return std::to_string(settings.tile_id) + " " + std::to_string(settings.period_ms) + " " +
+           std::to_string(settings.updates);
+}
+
+} // namespace
+
+TEST_CASE("every case of the shared table") {
+    for (const SettingsCase& settings_case : kCases) {
+        CAPTURE(settings_case.name);
+        CHECK(meaning_of(test::bytes_of_hex(settings_case.block)) == settings_case.meaning);
+    }
+}
+
+TEST_CASE("a block with any one bit flipped is ignored") {
+    const std::vector<uint8_t> good = test::bytes_of_hex(kCases[0].block);
+    for (size_t bit = 0; bit < good.size() * 8; ++bit) {
+        CAPTURE(bit);
+        std::vector<uint8_t> damaged = good;
+        damaged[bit / 8] ^= 1 << bit % 8;
+        CHECK(meaning_of(damaged) == "ignored");
+    }
+}
+
+TEST_CASE("a button that bounces counts once per press") {
+    Button button;
+    int presses = 0;
+    uint32_t now_ms = 0xFFFFFFF0; // the clock wraps on the way
+    const auto hold = [&](bool closed, int ms) {
+        for (int i = 0; i < ms; ++i) {
+            presses += button.pressed(closed, now_ms++);
+        }
+    };
+    hold(false, 50);
+    for (int i = 0; i < 5; ++i) {
+        hold(true, 2);
+        hold(false, 1);
+    }
+    CHECK(presses == 0);
+    hold(true, 25);
+    CHECK(presses == 1);
+    hold(true, 5000);
+    CHECK(presses == 1);
+    hold(false, 5);
+    hold(true, 100);
+    CHECK(presses == 1);
+    hold(false, 30);
+    hold(true, 30);
+    CHECK(presses == 2);
+}

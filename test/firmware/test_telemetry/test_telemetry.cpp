@@ -1,0 +1,166 @@
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include "../support.h"
+#include "app/telemetry.h"
+
+using namespace tilenca;
+using test::Numbers;
+using test::RandomModel;
+
+namespace {
+
+// The lines both twins agree on, by name.
+const char* line_of(const std::string& name) {
+    struct Line {
+        const char* name;
+        const char* text;
+    };
+    static const Line lines[] = {
+#define CASE(name, text) {name, text "\r\n"},
+#include "sentences.inc"
+#undef CASE
+    };
+    for (const Line& line : lines) {
+        if (name == line.name) {
+            return line.text;
+        }
+    }
+    FAIL("no such line: " << name);
+    return nullptr;
+}
+
+std::string text_of(const Sentence& sentence) { return {sentence.bytes(), sentence.size()}; }
+
+// Three channels; every state grows by 1/8192 * (bias) per update, so that texts are known beforehand.
+struct Fixture {
+    const std::vector<int8_t> zeros = std::vector<int8_t>(20, 0);
+    const std::vector<int16_t> no_bias = {0};
+    std::vector<int16_t> growth = {0, 1280, -2560};
+    const std::vector<Look> looks = {{'4', 0x66, 1, 2, 3}, {'b', 0x7C, 4, 5, 6}};
+    const Model model = {0xBEEF,
+                         2,
+                         {{15, 1, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(no_bias.data())},
+                          {1, 1, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(no_bias.data())},
+                          {1, 3, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(growth.data())}},
+                         FlashView<Look>(looks.data())};
+
+    // Ticks until a period has ended; returns that millisecond.
+    uint32_t end_period(Tile& tile, uint32_t now_ms) {
+        for (int i = 0; i < 20000; ++i) {
+            if (tile.tick(++now_ms)) {
+                return now_ms;
+            }
+        }
+        FAIL("no period ended");
+        return 0;
+    }
+
+    void let_neighbour_speak(Tile& tile, Side side, int frames, uint32_t now_ms) {
+        Link neighbour(0xBEEF, 3, 1000);
+        const int8_t message[3] = {1, 2, 3};
+        for (int i = 0; i < frames; ++i) {
+            uint8_t wire[kMaxFrame];
+            const uint8_t size = neighbour.send(message, wire);
+            for (uint8_t at = 0; at < size; ++at) {
+                tile.receive(side, wire[at], now_ms);
+            }
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
+    const Tile tile(model, {7, 2000, 30}, 0);
+    Sentence sentence;
+    write_hello(tile, 0x0A, &sentence);
+    CHECK(text_of(sentence) == line_of("hello of tile 7"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile that shows nothing yet says so") {
+    const Tile tile(model, {0, 100, 0}, 0);
+    Sentence sentence;
+    write_tile(tile, 0, &sentence);
+    CHECK(text_of(sentence) == line_of("tile before its first update"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile says what it shows, which links live, and its state as sent") {
+    Tile tile(model, {255, 100, 0}, 0);
+    let_neighbour_speak(tile, Side::North, 1, 90);
+    let_neighbour_speak(tile, Side::South, 2, 95);
+    end_period(tile, 99);
+    Sentence sentence;
+    write_tile(tile, 4294967295, &sentence);
+    CHECK(text_of(sentence) == line_of("tile after its first update"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a link tells its counters and its age") {
+    Tile tile(model, {7, 100, 0}, 0);
+    Sentence sentence;
+    write_link(tile, Side::West, 5, &sentence);
+    CHECK(text_of(sentence) == line_of("link that never heard a frame"));
+    let_neighbour_speak(tile, Side::East, 3, 90);
+    tile.receive(Side::East, 1, 90);
+    tile.receive(Side::East, 0, 90);
+    uint8_t wire[kMaxFrame];
+    tile.take_frame(Side::East, wire);
+    write_link(tile, Side::East, 300, &sentence);
+    CHECK(text_of(sentence) == line_of("link with a corrupt frame"));
+}
+
+TEST_CASE("the longest sentences fit") {
+    Numbers numbers(1);
+    const RandomModel random(kMaxChannels, 3, 3, 10, numbers, 9);
+    const Model model = random.model(0xFFFF);
+    const Tile tile(model, {255, 10000, 65535}, 0);
+    Sentence sentence;
+    write_tile(tile, 4294967295, &sentence);
+    CHECK(sentence.size() <= kMaxSentence);
+    CHECK(text_of(sentence).substr(sentence.size() - 2) == "\r\n");
+    CHECK(text_of(sentence).find(",----,C08080") != std::string::npos);
+    const size_t state_digits = text_of(sentence).find('*') - text_of(sentence).rfind(',') - 1;
+    CHECK(state_digits == 2 * kMaxChannels);
+}
+
+TEST_CASE_FIXTURE(Fixture, "after every period comes a tile sentence, then one link, in turn") {
+    Tile tile(model, {7, 100, 0}, 0);
+    Telemetry telemetry;
+    Sentence sentence;
+    CHECK_FALSE(telemetry.next(tile, 0, &sentence));
+    uint32_t now_ms = 0;
+    std::string names;
+    for (int period = 0; period < 5; ++period) {
+        now_ms = end_period(tile, now_ms);
+        telemetry.period_ended(tile);
+        while (telemetry.next(tile, now_ms, &sentence)) {
+            const std::string text = text_of(sentence);
+            const std::string time = std::to_string(now_ms);
+            names += text[1] == 'T' ? 'T' : text.at(text.find(time) + time.size() + 1);
+        }
+    }
+    CHECK(names == "TNTETSTWTN");
+}
+
+TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when its label changes") {
+    growth[1] = 0;
+    growth[2] = 0;
+    Tile tile(model, {7, 10, 0}, 0);
+    Telemetry telemetry;
+    Sentence sentence;
+    uint32_t now_ms = 0;
+    std::vector<uint32_t> spoken_at;
+    for (int period = 1; period <= 40; ++period) {
+        if (period == 15) {
+            growth[2] = 500; // now the second class wins
+        }
+        now_ms = end_period(tile, now_ms);
+        telemetry.period_ended(tile);
+        while (telemetry.next(tile, now_ms, &sentence)) {
+            if (sentence.bytes()[1] == 'T') {
+                spoken_at.push_back(tile.updates());
+            }
+        }
+    }
+    CHECK(spoken_at == std::vector<uint32_t>{1, 11, 15, 25, 35});
+}

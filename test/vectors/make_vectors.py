@@ -1,0 +1,223 @@
+"""Writes the cases that the C++ and the Python tests share: `python test/vectors/make_vectors.py`.
+
+Everything here is written a second time, from docs/PROTOCOL.md and as plainly as possible, so that a mistake
+in one of the twins is not in its expectations too. Only numpy is used; nothing of tilenca is imported.
+
+The files are lists of `CASE(...)`, which C++ includes behind a macro and Python reads with a regular
+expression.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+HERE = Path(__file__).parent
+HEADER = "// Written by make_vectors.py; do not edit.\n"
+
+
+def crc(data: bytes) -> int:
+    """CRC-16/IBM-3740, one bit at a time."""
+    register = 0xFFFF
+    for byte in data:
+        for bit in range(7, -1, -1):
+            feedback = (register >> 15) ^ (byte >> bit & 1)
+            register = (register << 1 & 0xFFFF) ^ (0x1021 if feedback else 0)
+    return register
+
+
+def cobs(payload: bytes) -> bytes:
+    """COBS of a payload shorter than 254 bytes: each zero's place holds the way to the next one."""
+    chain = bytearray(b"\0" + payload + b"\0")
+    zeros = [index for index, byte in enumerate(chain) if byte == 0]
+    for here, there in pairwise(zeros):
+        chain[here] = there - here
+    return bytes(chain[:-1])
+
+
+def payload(sequence: int, model: int, messages: Sequence[int], first: int = 0x10, bad_crc: int = 0) -> bytes:
+    """A frame's payload; `first` and `bad_crc` damage it on purpose."""
+    body = bytes([first, sequence, model & 0xFF, model >> 8, *(message + 128 for message in messages)])
+    check = crc(body) ^ bad_crc
+    return body + bytes([check & 0xFF, check >> 8])
+
+
+def frame(*args: int | Sequence[int], **damage: int) -> bytes:
+    """The payload as it goes on the wire."""
+    return cobs(payload(*args, **damage)) + b"\0"  # type: ignore[arg-type]
+
+
+def ready(sequence: int, model: int, messages: Sequence[int]) -> str:
+    """The event of a good frame."""
+    return " ".join(["ready", str(sequence), f"{model:04X}", *map(str, messages)])
+
+
+def frame_cases() -> list[tuple[str, int, bytes, list[str]]]:
+    """(name, channels the decoder expects, bytes of the line, events) of every case."""
+    one = (7, 0xBEEF, (1, -2, 3))
+    two = (8, 0xBEEF, (-127, 0, 127))
+    good, after = frame(*one), frame(*two)
+    ok, then = ready(*one), ready(*two)
+    wide = (255, 0x1234, tuple(range(-10, 11)))
+    widest = (0, 0xFFFF, tuple(range(-127, -76)))
+    flipped = bytes([good[0] ^ 0x04]) + good[1:]
+    return [
+        ("good frame", 3, good, [ok]),
+        ("greatest and least messages", 3, after, [then]),
+        ("every other byte of the header is zero", 3, frame(0, 0, (5, 6, 7)), [ready(0, 0, (5, 6, 7))]),
+        ("frame of the shipped model's size", 21, frame(*wide), [ready(*wide)]),
+        ("frame of the greatest size", 51, frame(*widest), [ready(*widest)]),
+        ("two frames without a pause", 3, good + after, [ok, then]),
+        ("zero bytes in between are nothing", 3, b"\0\0" + good + b"\0\0\0" + after + b"\0", [ok, then]),
+        ("nothing but zero bytes", 3, b"\0" * 9, []),
+        ("another model is a good frame", 3, frame(7, 0x0001, (1, 2, 3)), [ready(7, 0x0001, (1, 2, 3))]),
+        ("start in the middle, next frame survives", 3, good[4:] + after, ["corrupt", then]),
+        ("truncated, next frame survives", 3, good[:-3] + b"\0" + after, ["corrupt", then]),
+        ("delimiter lost, next but one survives", 3, good[:-1] + good + after, ["corrupt", then]),
+        ("one byte lost, next frame survives", 3, good[:5] + good[6:] + after, ["corrupt", then]),
+        ("one byte doubled, next frame survives", 3, good[:5] + good[4:] + after, ["corrupt", then]),
+        ("too long, next frame survives", 3, frame(7, 0xBEEF, (1, 2, 3, 4)) + after, ["corrupt", then]),
+        ("too short, next frame survives", 3, frame(7, 0xBEEF, (1, 2)) + after, ["corrupt", then]),
+        ("300 bytes without a delimiter, next survives", 3, b"\x55" * 300 + b"\0" + after, ["corrupt", then]),
+        ("256 bytes more than a frame, next survives", 3, b"\1" * 256 + good + after, ["corrupt", then]),
+        ("bad crc, next frame survives", 3, frame(*one, bad_crc=0x0100) + after, ["corrupt", then]),
+        ("wrong version with a good crc", 3, frame(*one, first=0x20) + after, ["corrupt", then]),
+        ("wrong kind with a good crc", 3, frame(*one, first=0x11) + after, ["corrupt", then]),
+        ("message -128 with a good crc", 3, frame(7, 0xBEEF, (1, -128, 3)) + after, ["corrupt", then]),
+        ("bit flipped in the cobs code", 3, flipped + after, ["corrupt", then]),
+        ("cobs code beyond the end", 3, b"\x20" + good[1:] + after, ["corrupt", then]),
+        ("cobs code that would come round again", 3, b"\1" + b"\xff" * 9 + b"\0" + after, ["corrupt", then]),
+        ("single byte", 3, b"\1\0" + after, ["corrupt", then]),
+        ("no delimiter yet", 3, good[:-1], []),
+    ]
+
+
+def settings_cases() -> list[tuple[str, bytes, str]]:
+    """(name, block in EEPROM, what it means) of every case."""
+
+    def block(tile: int, period: int, updates: int, magic: bytes = b"TN\1", bad_crc: int = 0) -> bytes:
+        body = magic + bytes([tile, period & 0xFF, period >> 8, updates & 0xFF, updates >> 8])
+        check = crc(body) ^ bad_crc
+        return body + bytes([check & 0xFF, check >> 8])
+
+    return [
+        ("the paper's", block(7, 2000, 30), "7 2000 30"),
+        ("no id, shortest period, for ever", block(0, 10, 0), "0 10 0"),
+        ("greatest values", block(255, 10000, 65535), "255 10000 65535"),
+        ("erased", b"\xff" * 10, "ignored"),
+        ("zeros", b"\0" * 10, "ignored"),
+        ("period too short", block(7, 9, 30), "ignored"),
+        ("period too long", block(7, 10001, 30), "ignored"),
+        ("wrong magic", block(7, 2000, 30, magic=b"NT\1"), "ignored"),
+        ("wrong version", block(7, 2000, 30, magic=b"TN\2"), "ignored"),
+        ("bit flipped in the crc", block(7, 2000, 30, bad_crc=1), "ignored"),
+        ("bit flipped in the updates", block(7, 2000, 30)[:6] + b"\x1f" + block(7, 2000, 30)[7:], "ignored"),
+    ]
+
+
+def sentence_cases() -> list[tuple[str, str]]:
+    """(name, text between `$` and `*`) of every case; the tests of both twins know the values behind them."""
+    return [
+        ("hello of tile 7", "HELLO,1,7,BEEF,3,2,2000,30,0A"),
+        ("tile before its first update", "TILE,0,0,0,,----,C08080"),
+        ("tile after its first update", "TILE,255,4294967295,1,4,N-S-,C08A6C"),
+        ("link that never heard a frame", "LINK,7,5,W,0,0,0,0,0,"),
+        ("link with a corrupt frame", "LINK,7,300,E,1,3,1,0,0,210"),
+    ]
+
+
+class Numbers:
+    """Random integers that the C++ test draws too: xorshift32."""
+
+    def __init__(self, seed: int) -> None:
+        self._state = seed
+
+    def draw(self, low: int, high: int) -> int:
+        """The next one, low..high."""
+        state = self._state
+        state ^= state << 13 & 0xFFFFFFFF
+        state ^= state >> 17
+        state ^= state << 5 & 0xFFFFFFFF
+        self._state = state
+        return low + state % (high - low + 1)
+
+    def array(self, low: int, high: int, *shape: int) -> NDArray[np.int64]:
+        """An array of them in row-major order."""
+        return np.array([self.draw(low, high) for _ in range(int(np.prod(shape)))]).reshape(shape)
+
+
+def run_network(
+    channels: int, hidden1: int, hidden2: int, seed: int, reach: int, updates: int
+) -> tuple[str, int]:
+    """Runs one cell with random weights on random neighbours; docs/PROTOCOL.md section 4 in int64.
+
+    Args:
+        channels: C.
+        hidden1: H1.
+        hidden2: H2.
+        seed: of the weights, then of the neighbours' messages, in this order.
+        reach: weights are -reach..reach, biases up to 128 times that.
+        updates: how many.
+
+    Returns:
+        The state after the first update as text, and the CRC of all states (little-endian) one after another.
+    """
+    numbers = Numbers(seed)
+    widths = [(hidden1, 5 * channels), (hidden2, hidden1), (channels, hidden2)]
+    layers = [
+        (numbers.array(-reach, reach, *width), numbers.array(-128 * reach, 128 * reach, width[0]))
+        for width in widths
+    ]
+    state = np.zeros(channels, dtype=np.int64)
+    state[0] = 8192
+    history = b""
+    first = ""
+    for _ in range(updates):
+        own = state + 64 >> 7
+        neighbours = numbers.array(-127, 127, 4 * channels)
+        activation = np.concatenate([own, neighbours])
+        for weights, biases in layers[:2]:
+            activation = np.clip(weights @ activation + biases + 32 >> 6, 0, 127)
+        weights, biases = layers[2]
+        state = np.clip(state + weights @ activation + biases, -16256, 16256)
+        first = first or " ".join(map(str, state))
+        history += state.astype("<i2").tobytes()
+    return first, crc(history)
+
+
+def network_cases() -> list[tuple[str, tuple[int, ...]]]:
+    """(name, arguments of run_network) of every case."""
+    return [
+        ("one channel, one of each", (1, 1, 1, 1, 127, 200)),
+        ("shipped widths, small weights", (21, 40, 40, 2, 12, 300)),
+        ("shipped widths, any weights", (21, 40, 40, 3, 127, 300)),
+        ("widths that no slice divides", (3, 9, 7, 4, 60, 300)),
+        ("greatest widths", (51, 127, 127, 5, 127, 60)),
+    ]
+
+
+def text_of_files() -> dict[str, str]:
+    """Every file by its name."""
+    frames = [
+        f'CASE("{name}", {channels}, "{line.hex()}", "{";".join(events)}")'
+        for name, channels, line, events in frame_cases()
+    ]
+    settings = [f'CASE("{name}", "{block.hex()}", "{meaning}")' for name, block, meaning in settings_cases()]
+    sentences = []
+    for name, text in sentence_cases():
+        xor = int(np.bitwise_xor.reduce(np.frombuffer(text.encode(), np.uint8)))
+        sentences.append(f'CASE("{name}", "${text}*{xor:02X}")')
+    networks = []
+    for name, (channels, hidden1, hidden2, seed, reach, updates) in network_cases():
+        first, check = run_network(channels, hidden1, hidden2, seed, reach, updates)
+        size = f"{channels}, {hidden1}, {hidden2}, {seed}, {reach}, {updates}"
+        networks.append(f'CASE("{name}", {size}, "{first}", 0x{check:04X})')
+    files = {"frames": frames, "settings": settings, "sentences": sentences, "networks": networks}
+    return {f"{name}.inc": HEADER + "\n".join(cases) + "\n" for name, cases in files.items()}
+
+
+if __name__ == "__main__":
+    for name, text in text_of_files().items():
+        (HERE / name).write_text(text, encoding="utf-8")
