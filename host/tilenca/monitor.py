@@ -1,0 +1,189 @@
+"""`tilenca monitor`: the telemetry of all tiles as a live table, a log, or JSON; recorded, played back."""
+
+import argparse
+import fnmatch
+import json
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Protocol, TextIO
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.text import Text
+
+from tilenca.errors import UsageError
+from tilenca.fleetview import live_table, log_line, summary
+from tilenca.portreader import PortReader
+from tilenca.ports import add_port_argument, find_ports, warn
+from tilenca.protocol import HelloSentence
+from tilenca.recording import format_event, paced, read_recording
+from tilenca.telemetry import Event, Fleet, Heard, PortNews, as_json
+
+TICK_S = 0.2
+LOG_LINES = 8
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the command's options."""
+    add_port_argument(parser)
+    parser.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
+    parser.add_argument(
+        "--seconds", type=_not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
+    )
+    storage = parser.add_mutually_exclusive_group()
+    storage.add_argument(
+        "--record", type=Path, metavar="F", help="append all that is heard to F, with its time"
+    )
+    storage.add_argument("--replay", type=Path, metavar="F", help="show a recording instead of reading ports")
+    parser.add_argument(
+        "--speed",
+        type=_not_negative,
+        default=1.0,
+        metavar="X",
+        help="replay X times as fast; 0: at once (default: 1)",
+    )
+
+
+def _not_negative(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not 0 <= number < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 0")
+    return number
+
+
+def run(args: argparse.Namespace) -> int:
+    """Shows events until the end or an interrupt; see `tilenca monitor --help`."""
+    fleet = Fleet()
+    try:
+        with ExitStack() as stack:
+            source = _replay(args) if args.replay else _listen(args, stack)
+            record = stack.enter_context(_recording(args.record)) if args.record else None
+            display: Display = _JsonLines() if args.json else _display(fleet, stack)
+            _show(source, fleet, display, record, args.seconds)
+    finally:
+        if fleet.tiles:
+            warn(summary(fleet.tiles.values()))
+    return 0 if all(view.was_open for view in fleet.tiles.values()) else 1
+
+
+class Display(Protocol):
+    """Shows the fleet and what is new; called at least every TICK_S."""
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        """Shows events, just taken by the fleet."""
+
+
+def _show(
+    source: Iterator[tuple[float, list[Event]]],
+    fleet: Fleet,
+    display: Display,
+    record: TextIO | None,
+    seconds: float | None,
+) -> None:
+    began_s: float | None = None
+    for now_s, events in source:
+        began_s = now_s if began_s is None else began_s
+        if seconds is not None and now_s - began_s > seconds:
+            return
+        for event in events:
+            fleet.take(event)
+        if record and events:
+            record.writelines(map(format_event, events))
+            record.flush()
+        display.show(now_s, events)
+
+
+def _listen(args: argparse.Namespace, stack: ExitStack) -> Iterator[tuple[float, list[Event]]]:
+    """Events from the ports, which are found (or not) before anything is shown."""
+    names = [port.name for port in find_ports(args.port)]
+    reader = stack.enter_context(PortReader(names))
+
+    def events() -> Iterator[tuple[float, list[Event]]]:
+        while True:
+            news = reader.poll(TICK_S)
+            yield time.time(), news
+
+    return events()
+
+
+def _replay(args: argparse.Namespace) -> Iterator[tuple[float, list[Event]]]:
+    """Events from a recording, of the ports that match."""
+    chosen = (
+        event
+        for event in read_recording(args.replay)
+        if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port)
+    )
+    return paced(chosen, args.speed, TICK_S)
+
+
+def _recording(path: Path) -> TextIO:
+    try:
+        return path.open("a", encoding="ascii")
+    except OSError as error:
+        raise UsageError(
+            f"{path}: {error.strerror}; name a file that can be written with --record"
+        ) from error
+
+
+class _JsonLines:
+    """Good sentences as JSON on stdout, all else on stderr."""
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        for event in events:
+            if isinstance(event, Heard) and event.sentence is not None:
+                print(json.dumps(as_json(event)))
+            else:
+                warn(log_line(event))
+        if events:
+            print(end="", flush=True)
+
+
+class _LogLines:
+    """Every event as a line on stdout."""
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        for event in events:
+            print(log_line(event))
+        if events:
+            print(end="", flush=True)
+
+
+class _LiveTable:
+    """The fleet's table, and below it the last remarkable lines."""
+
+    def __init__(self, fleet: Fleet, console: Console) -> None:
+        self._fleet = fleet
+        self._log: deque[str] = deque(maxlen=LOG_LINES)
+        self._now_s = 0.0
+        self._shown_s = 0.0
+        self.live = Live(console=console, auto_refresh=False, get_renderable=self._picture)
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        self._now_s = now_s
+        self._log.extend(log_line(event) for event in events if _remarkable(event))
+        if time.monotonic() - self._shown_s >= TICK_S:
+            self._shown_s = time.monotonic()
+            self.live.refresh()
+
+    def _picture(self) -> Group:
+        log = Text("\n".join(self._log), no_wrap=True, overflow="ellipsis")
+        return Group(live_table(self._fleet, self._now_s), Text(), log)
+
+
+def _remarkable(event: Event) -> bool:
+    return isinstance(event, PortNews) or event.sentence is None or isinstance(event.sentence, HelloSentence)
+
+
+def _display(fleet: Fleet, stack: ExitStack) -> Display:
+    console = Console()
+    if not console.is_terminal:
+        return _LogLines()
+    display = _LiveTable(fleet, console)
+    stack.enter_context(display.live)
+    return display

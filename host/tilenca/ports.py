@@ -1,0 +1,172 @@
+"""Serial ports behind which a tile may be: found on USB or named by globs, and who holds them.
+
+One board is one character device, however many names lead to it, so that no two programs are started on it.
+"""
+
+import argparse
+import glob
+import grp
+import os
+import re
+import stat
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from serial.tools.list_ports import comports
+from serial.tools.list_ports_common import ListPortInfo
+
+from tilenca.errors import NoDeviceError
+
+
+@dataclass(frozen=True)
+class Adapter:
+    """What a pair of USB ids says: `certain` if it can only be a Mega 2560."""
+
+    name: str
+    certain: bool
+
+
+# Arduino's own ids name the board; a generic serial chip may sit on anything.
+ADAPTERS: dict[tuple[int, int], Adapter] = {
+    (0x2341, 0x0010): Adapter("Arduino Mega 2560", certain=True),
+    (0x2341, 0x0042): Adapter("Arduino Mega 2560 R3", certain=True),
+    (0x2341, 0x0210): Adapter("Arduino Mega 2560", certain=True),
+    (0x2341, 0x0242): Adapter("Arduino Mega 2560 R3", certain=True),
+    (0x2A03, 0x0010): Adapter("Arduino.org Mega 2560", certain=True),
+    (0x2A03, 0x0042): Adapter("Arduino.org Mega 2560 R3", certain=True),
+    (0x1A86, 0x7523): Adapter("CH340 adapter", certain=False),
+    (0x1A86, 0x55D4): Adapter("CH9102 adapter", certain=False),
+    (0x0403, 0x6001): Adapter("FTDI FT232R adapter", certain=False),
+    (0x0403, 0x6015): Adapter("FTDI FT231X adapter", certain=False),
+}
+
+MAGIC = re.compile(r"[*?[]")
+
+
+@dataclass(frozen=True)
+class Port:
+    """A serial port.
+
+    Attributes:
+        name: path of the device as it was found or named.
+        vid: USB vendor id; None for what is not on USB, such as a pseudo-terminal.
+        pid: USB product id, likewise.
+        serial_number: of the USB adapter; None if it has none.
+        about: what is known of it, for people.
+        present: False for a port that was named but is not there.
+    """
+
+    name: str
+    vid: int | None = None
+    pid: int | None = None
+    serial_number: str | None = None
+    about: str = ""
+    present: bool = True
+
+
+def natural_key(text: str) -> list[tuple[int, str]]:
+    """Sort key that puts ttyACM2 before ttyACM10."""
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
+
+
+def describe(info: ListPortInfo) -> Port:
+    """What pyserial knows of a port, in our terms."""
+    adapter = ADAPTERS.get((info.vid, info.pid))
+    if adapter is None:
+        about = info.product or info.description or ""
+        return Port(info.device, info.vid, info.pid, info.serial_number, "" if about == "n/a" else about)
+    about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
+    return Port(info.device, info.vid, info.pid, info.serial_number, about)
+
+
+def megas(infos: Iterable[ListPortInfo]) -> list[Port]:
+    """The ports among `infos` that are, or may be, Mega 2560s, in natural order of their names."""
+    found = [describe(info) for info in infos if (info.vid, info.pid) in ADAPTERS]
+    return sorted(found, key=lambda port: natural_key(port.name))
+
+
+def find_ports(patterns: Sequence[str] = ()) -> list[Port]:
+    """The ports that `--port` names, or without any the Mega 2560s on USB.
+
+    A pattern matches character devices by path (links to them too); a name without wildcards that is not
+    there is returned with `present` False, so that one missing board is told and does not stop the others.
+
+    Raises:
+        NoDeviceError: nothing was found.
+    """
+    infos = list(comports())
+    if not patterns:
+        if found := megas(infos):
+            return found
+        raise NoDeviceError(
+            "no Mega 2560 found on USB; connect a tile's USB cable, or name ports with --port '/dev/ttyACM*' "
+            "(emulated tiles: tilenca emulate --serve DIR, then --port 'DIR/*')"
+        )
+    by_device = {os.path.realpath(info.device): describe(info) for info in infos}
+    found = _named(patterns, by_device)
+    if not any(port.present for port in found):
+        raise NoDeviceError(
+            f"no serial port matches {' '.join(patterns)}; `tilenca devices` lists what is on USB"
+        )
+    return found
+
+
+def _named(patterns: Sequence[str], by_device: dict[str, Port]) -> list[Port]:
+    ports: dict[str, Port] = {}
+    for pattern in patterns:
+        literal = os.path.lexists(pattern) or not MAGIC.search(pattern)
+        # Path.glob refuses absolute patterns.
+        names = [pattern] if literal else sorted(glob.glob(pattern), key=natural_key)  # noqa: PTH207
+        for name in names:
+            device = os.path.realpath(name)
+            known = by_device.get(device, Port(name))
+            if is_device(name):
+                about = known.about or ("pseudo-terminal" if is_pty(device) else "")
+                ports.setdefault(device, Port(name, known.vid, known.pid, known.serial_number, about))
+            elif literal:
+                about = "not a serial port" if Path(name).exists() else "no such port"
+                ports.setdefault(device, Port(name, about=about, present=False))
+    return sorted(ports.values(), key=lambda port: natural_key(port.name))
+
+
+def is_device(name: str) -> bool:
+    """Whether `name` is a character device now."""
+    try:
+        return stat.S_ISCHR(Path(name).stat().st_mode)
+    except OSError:
+        return False
+
+
+def is_pty(device: str) -> bool:
+    """Whether a resolved path is a pseudo-terminal."""
+    return device.startswith("/dev/pts/")
+
+
+def denial(name: str) -> str | None:
+    """Why this user may not use a port and what to do about it, or None if they may."""
+    if os.access(name, os.R_OK | os.W_OK):
+        return None
+    try:
+        group = grp.getgrgid(Path(name).stat().st_gid).gr_name
+    except (OSError, KeyError):
+        group = "dialout"
+    group = "dialout" if group == "root" else group
+    return f"permission denied; join its group with `sudo usermod -aG {group} $USER`, then log in again"
+
+
+def add_port_argument(parser: argparse.ArgumentParser) -> None:
+    """The `--port` option that all fleet commands share."""
+    parser.add_argument(
+        "--port",
+        action="append",
+        default=[],
+        metavar="GLOB",
+        help="a port or a quoted pattern, such as '/dev/ttyACM*', repeatable (default: Mega 2560s on USB)",
+    )
+
+
+def warn(message: str) -> None:
+    """One line of chatter on stderr."""
+    print(message, file=sys.stderr, flush=True)

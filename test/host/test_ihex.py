@@ -1,0 +1,100 @@
+"""Intel HEX: what is an image, and which images are never written."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tilenca.errors import BuildError, TilencaError, UsageError
+from tilenca.ihex import APPLICATION_BYTES, HexError, check_image, parse_hex
+
+END = ":00000001FF\n"
+
+
+def record(offset: int, kind: int, data: bytes) -> str:
+    raw = bytes([len(data)]) + offset.to_bytes(2, "big") + bytes([kind]) + data
+    return ":" + (raw + bytes([-sum(raw) & 0xFF])).hex().upper() + "\n"
+
+
+def image(data: bytes, start: int = 0) -> str:
+    """An Intel HEX file of `data` from address `start`."""
+    lines = []
+    for at in range(0, len(data), 16):
+        address = start + at
+        lines.append(record(0, 4, (address >> 16).to_bytes(2, "big")))
+        lines.append(record(address & 0xFFFF, 0, data[at : at + 16]))
+    return "".join(lines) + END
+
+
+@given(st.binary(max_size=300), st.integers(0, 0x3F00).map(lambda block: block * 16))
+def test_what_is_written_is_read_back(data: bytes, start: int) -> None:
+    assert parse_hex(image(data, start)) == dict(enumerate(data, start))
+
+
+@given(st.text(alphabet=":0123456789ABCDEFabcdef\n\rg ", max_size=200) | st.text(max_size=100))
+def test_any_text_is_an_image_or_a_hex_error(text: str) -> None:
+    try:
+        memory = parse_hex(text)
+    except HexError:
+        return
+    assert all(0 <= byte <= 255 for byte in memory.values())
+
+
+def test_segment_addresses_are_in_units_of_16() -> None:
+    assert parse_hex(record(0, 2, b"\x10\x00") + record(2, 0, b"x") + END) == {0x10002: ord("x")}
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("", "truncated"),
+        (image(b"abc").replace(END, ""), "truncated"),
+        (image(b"abc").replace("61", "62"), ":2: wrong checksum"),
+        (record(0, 0, b"ab") + record(1, 0, b"c") + END, ":2: address 0x1 is given twice"),
+        (record(0, 9, b"") + END, ":1: unknown record type 9"),
+        ("\x7fELF\n", ":1: not an Intel HEX record"),
+        (":0\n", ":1: not an Intel HEX record"),
+        (":0000\n", ":1: a record of the wrong length"),
+        (END, "without a byte"),
+        (image(b"x" * 16, APPLICATION_BYTES - 8), "reaches address 0x3E007"),
+        (image(b"Hello" + b"!" * 3), "'!!!' at 0x5"),
+        (image(b"13 bytes and !!!"), "'!!!' at 0xD"),
+        (image(b"fifteen bytes!!" + b"!"), "'!!!' at 0xD"),
+    ],
+)
+def test_a_bad_image_is_refused_with_place_and_fact(text: str, complaint: str, tmp_path: Path) -> None:
+    path = tmp_path / "firmware.hex"
+    path.write_text(text)
+    with pytest.raises(UsageError) as caught:
+        check_image(path)
+    assert str(caught.value).startswith(str(path))
+    assert complaint in str(caught.value)
+
+
+def test_three_marks_across_two_records_are_found(tmp_path: Path) -> None:
+    path = tmp_path / "firmware.hex"
+    path.write_text(image(b"x" * 14 + b"!!" + b"!" + b"y" * 9))
+    with pytest.raises(UsageError, match="'!!!' at 0xE"):
+        check_image(path)
+
+
+def test_an_image_up_to_the_bootloader_is_accepted(tmp_path: Path) -> None:
+    path = tmp_path / "firmware.hex"
+    path.write_text(image(b"!!" + b"x" * 14, APPLICATION_BYTES - 16))
+    assert check_image(path) == 16
+
+
+def test_a_missing_image_is_a_build_error(tmp_path: Path) -> None:
+    with pytest.raises(BuildError, match="--hex"):
+        check_image(tmp_path / "none.hex")
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", None])
+def test_what_cannot_be_read_as_text_is_refused(content: bytes | None, tmp_path: Path) -> None:
+    path = tmp_path
+    if content is not None:
+        path = tmp_path / "binary"
+        path.write_bytes(content)
+    with pytest.raises(TilencaError, match=r"--hex|firmware\.hex"):
+        check_image(path)

@@ -1,0 +1,315 @@
+"""The monitor on real pseudo-terminals, as a user runs it."""
+
+import json
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import termios
+import tty
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import IO, Any, Self
+
+import pytest
+
+from tilenca.cli import main
+from tilenca.fleetview import cells, log_line, printable
+from tilenca.portreader import PortReader
+from tilenca.protocol import HelloSentence, LinkSentence, Sentence, TileSentence, format_sentence
+from tilenca.telemetry import Event, Heard, PortNews, TileView
+
+LIMIT_S = 60
+STATE = bytes([128]) * 21
+
+
+class Tile:
+    """A tile's USB serial as a pseudo-terminal; use it as a context manager."""
+
+    def __init__(self, tile: int) -> None:
+        self.tile = tile
+        self.updates = 0
+
+    def __enter__(self) -> Self:
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        self.port = os.ttyname(self._slave)
+        return self
+
+    def __exit__(self, *about: object) -> None:
+        self.unplug()
+
+    def unplug(self) -> None:
+        """The port vanishes."""
+        if self._master >= 0:
+            os.close(self._master)
+            os.close(self._slave)
+            self._master = -1
+
+    def write(self, data: bytes) -> None:
+        os.write(self._master, data)
+
+    def say(self, label: str = "4") -> None:
+        self.updates += 1
+        self.write(
+            format_sentence(TileSentence(self.tile, 100 * self.updates, self.updates, label, "N-SW", STATE))
+        )
+
+
+@pytest.fixture
+def tiles() -> Iterator[list[Tile]]:
+    with ExitStack() as stack:
+        yield [stack.enter_context(Tile(number)) for number in (1, 2, 3)]
+
+
+class Monitor:
+    """A running `tilenca monitor`; ends with its block at the latest."""
+
+    def __init__(self, *arguments: str) -> None:
+        command = [sys.executable, "-m", "tilenca.cli", "monitor", *arguments]
+        # Without a buffer of ours, select() sees all that is there.
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *about: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def read_until(self, stream: IO[bytes] | None, wanted: Callable[[str], bool]) -> list[str]:
+        """Lines up to the first that is wanted; fails if none comes."""
+        assert stream is not None
+        lines: list[str] = []
+        while not lines or not wanted(lines[-1]):
+            ready, _, _ = select.select([stream], [], [], LIMIT_S)
+            line = stream.readline().decode() if ready else ""
+            assert line, f"the monitor ended or fell silent after {lines}"
+            lines.append(line.rstrip("\n"))
+        return lines
+
+    def interrupt(self) -> tuple[str, str]:
+        """Ctrl-C; the rest of stdout and stderr."""
+        self.process.send_signal(signal.SIGINT)
+        output, chatter = self.process.communicate(timeout=LIMIT_S)
+        return (output or b"").decode(), chatter.decode()
+
+
+def ports(*tiles: Tile) -> list[str]:
+    return [argument for tile in tiles for argument in ("--port", tile.port)]
+
+
+def wait_open(monitor: Monitor, stream: IO[bytes] | None, count: int) -> None:
+    for _ in range(count):
+        monitor.read_until(stream, lambda line: line.endswith("PORT open"))
+
+
+def test_json_has_one_object_per_sentence_and_damage_on_stderr(tiles: list[Tile]) -> None:
+    with Monitor("--json", *ports(*tiles)) as monitor:
+        wait_open(monitor, monitor.process.stderr, 3)
+        for tile in tiles:
+            tile.say()
+            tile.write(b"$TILE,dam\x1baged*00\r\n")
+            tile.write(format_sentence(LinkSentence(tile.tile, 100, "E", 9, 8, 1, 0, 0, 12)))
+        heard: list[dict[str, Any]] = []
+        while len(heard) < 6:
+            heard.append(json.loads(monitor.read_until(monitor.process.stdout, bool)[-1]))
+        _, chatter = monitor.interrupt()
+    assert monitor.process.returncode == 130
+    for tile in tiles:
+        state, link = (about for about in heard if about["port"] == tile.port)
+        assert (state["type"], state["tile"], state["fields"]["label"]) == ("TILE", tile.tile, "4")
+        assert (link["type"], link["tile"], link["fields"]["corrupt"]) == ("LINK", tile.tile, 1)
+        assert f"{tile.port} - DAMAGED $TILE,dam\\x1baged*00" in chatter
+    summary = [line.split() for line in chatter.splitlines()]
+    assert [*tiles[0].port.split(), "1", "2", "1", "0"] in summary
+    assert "Traceback" not in chatter
+
+
+def test_a_port_that_vanishes_is_told_and_retried_while_the_others_go_on(
+    tiles: list[Tile], tmp_path: Path
+) -> None:
+    steady, shaky, spare = tiles
+    cable = tmp_path / "tile"
+    cable.symlink_to(shaky.port)
+    with Monitor("--port", str(cable), *ports(steady)) as monitor:
+        wait_open(monitor, monitor.process.stdout, 2)
+        shaky.say()
+        monitor.read_until(monitor.process.stdout, lambda line: f"{cable} tile 2 TILE shows 4" in line)
+        shaky.unplug()
+        cable.unlink()
+        monitor.read_until(monitor.process.stdout, lambda line: f"{cable} - PORT went away" in line)
+        steady.say()
+        monitor.read_until(monitor.process.stdout, lambda line: f"{steady.port} tile 1 TILE" in line)
+        cable.symlink_to(spare.port)
+        monitor.read_until(monitor.process.stdout, lambda line: line.endswith(f"{cable} - PORT open"))
+        spare.say()
+        monitor.read_until(monitor.process.stdout, lambda line: f"{cable} tile 3 TILE" in line)
+        _, chatter = monitor.interrupt()
+    assert monitor.process.returncode == 130
+    assert [str(cable), "3", "2", "0", "1"] in [line.split() for line in chatter.splitlines()]
+
+
+def test_what_is_recorded_is_replayed_through_the_same_view(
+    tiles: list[Tile], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = tmp_path / "record.jsonl"
+    with Monitor("--record", str(record), *ports(*tiles)) as monitor:
+        wait_open(monitor, monitor.process.stdout, 3)
+        for tile in tiles:
+            tile.write(b"\xfenoise\n")
+            tile.say("7")
+        live = [
+            line
+            for _ in tiles
+            for line in monitor.read_until(monitor.process.stdout, lambda line: "TILE shows 7" in line)
+        ]
+        monitor.interrupt()
+    assert main(["monitor", "--replay", str(record), "--speed", "0"]) == 0
+    replayed = capsys.readouterr().out.splitlines()
+    assert replayed[-len(live) :] == live
+    assert main(["monitor", "--replay", str(record), "--speed", "0", "--json", "--port", tiles[1].port]) == 0
+    [only] = capsys.readouterr().out.splitlines()
+    assert (json.loads(only)["tile"], json.loads(only)["fields"]["label"]) == (2, "7")
+
+
+def test_on_a_terminal_it_is_a_live_table_without_colour_if_so_asked(
+    tiles: list[Tile], tmp_path: Path
+) -> None:
+    record = tmp_path / "record.jsonl"
+    with Monitor("--record", str(record), *ports(*tiles)) as monitor:
+        wait_open(monitor, monitor.process.stdout, 3)
+        for tile in tiles:
+            tile.say("7")
+            monitor.read_until(monitor.process.stdout, lambda line: "TILE shows 7" in line)
+        monitor.interrupt()
+    screen, inside = pty.openpty()
+    termios.tcsetwinsize(inside, (40, 150))
+    environment = {**os.environ, "TERM": "xterm-256color", "NO_COLOR": "1"}
+    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--replay", str(record), "--speed", "0"]
+    done = subprocess.run(
+        command, stdout=inside, stderr=subprocess.PIPE, env=environment, timeout=LIMIT_S, check=False
+    )
+    os.close(inside)
+    picture = read_all(screen)
+    assert done.returncode == 0, done.stderr
+    assert "RECEIVED" in picture
+    for tile in tiles:
+        row = next(line for line in reversed(picture.splitlines()) if line.startswith(tile.port))
+        assert row.split()[:6] == [tile.port, str(tile.tile), "7", "1", "0", "s"]
+    assert "\x1b[3" not in picture, "a colour"
+
+
+def read_all(descriptor: int) -> str:
+    data = b""
+    try:
+        while piece := os.read(descriptor, 65536):
+            data += piece
+    except OSError:
+        pass  # Linux's way to say that the other end of a pseudo-terminal is closed
+    os.close(descriptor)
+    return data.decode()
+
+
+def test_seconds_end_it_without_an_interrupt(tiles: list[Tile], capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["monitor", "--seconds", "0.1", *ports(*tiles)]) == 0
+    assert capfd.readouterr().out.count("PORT open") == 3
+
+
+def test_a_port_that_never_opened_exits_with_1(tiles: list[Tile], capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["monitor", "--seconds", "0.1", *ports(tiles[0]), "--port", "/dev/no-such-port"]) == 1
+    assert "/dev/no-such-port - PORT no such port; waiting for it" in capfd.readouterr().out
+
+
+def test_two_monitors_do_not_share_a_port(tiles: list[Tile], capfd: pytest.CaptureFixture[str]) -> None:
+    with PortReader([tiles[0].port]) as reader:
+        [news] = reader.poll(0.0)
+        assert isinstance(news, PortNews)
+        assert news.is_open
+        assert main(["monitor", "--seconds", "0.1", *ports(tiles[0])]) == 1
+    assert f"busy: tilenca monitor (pid {os.getpid()})" in capfd.readouterr().out
+
+
+def test_leaving_a_port_does_not_lower_dtr(tiles: list[Tile]) -> None:
+    with PortReader([tiles[0].port]) as reader:
+        reader.poll(0.0)
+        flags = termios.tcgetattr(tiles[0]._slave)[2]
+    assert not flags & termios.HUPCL
+
+
+def test_a_hundred_bursts_from_many_ports_lose_nothing(tiles: list[Tile]) -> None:
+    with PortReader([tile.port for tile in tiles]) as reader:
+        assert len(reader.poll(0.0)) == 3
+        heard: list[Event] = []
+        for _ in range(100):
+            for tile in tiles:
+                tile.say()
+            heard += reader.poll(0.0)
+        for _ in range(1000):
+            if len(heard) == 300:
+                break
+            heard += reader.poll(1.0)
+    for tile in tiles:
+        mine = [event for event in heard if event.port == tile.port]
+        assert [
+            event.sentence.updates
+            for event in mine
+            if isinstance(event, Heard) and isinstance(event.sentence, TileSentence)
+        ] == list(range(1, 101))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--replay", "/no/such/file"],
+        ["--replay", "/dev/null", "--record", "x"],
+        ["--seconds", "-1"],
+        ["--speed", "nan"],
+    ],
+)
+def test_bad_arguments_exit_with_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        status: object = main(["monitor", *arguments])
+    except SystemExit as ended:
+        status = ended.code
+    assert status == 2
+    assert capsys.readouterr().out == ""
+
+
+def test_a_record_that_cannot_be_written_is_refused(
+    tiles: list[Tile], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["monitor", "--record", "/no/such/place", *ports(tiles[0])]) == 2
+    assert "--record" in capsys.readouterr().err
+
+
+def test_bytes_cannot_disturb_the_terminal() -> None:
+    assert printable(b"\x1b[2J\xff\n" + b"x" * 100).isprintable()
+
+
+def test_a_log_line_names_time_port_and_tile() -> None:
+    sentences: dict[str, Sentence] = {
+        "tile 7 TILE shows nothing update 0 up 0.5 s links ----": TileSentence(7, 500, 0, "", "----", STATE),
+        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 age never": LinkSentence(
+            7, 0, "W", 1, 2, 3, 4, 5, None
+        ),
+        "tile 7 HELLO protocol 1 model 00AB (21 channels, 10 classes) every 250 ms for ever reset cause 04": (
+            HelloSentence(1, 7, 0xAB, 21, 10, 250, 0, 4)
+        ),
+    }
+    for expected, sentence in sentences.items():
+        line = log_line(Heard(0.0, "/dev/ttyACM0", b"", sentence))
+        assert line.endswith(f":00.000 /dev/ttyACM0 {expected}")
+
+
+def test_a_tile_that_fell_silent_is_marked() -> None:
+    view = TileView("p")
+    view.take(PortNews(0.0, "p", is_open=True))
+    view.take(Heard(10.0, "p", b"", HelloSentence(1, 7, 0, 21, 10, 10000, 0, 0)))
+    assert cells(view, 25.0)[-1] == ""
+    assert cells(view, 31.0)[-1] == "silent"
+    view.take(PortNews(32.0, "p", is_open=False, reason="went away"))
+    assert cells(view, 33.0)[-1] == "went away"

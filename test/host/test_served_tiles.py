@@ -1,0 +1,111 @@
+"""The fleet tools on emulated tiles: stock bootloader, real avrdude, real firmware."""
+
+import json
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_ihex import image
+
+from tilenca import paths
+from tilenca.flash import build
+
+LIMIT_S = 120
+
+# `rjmp .-2` at the reset vector: a program that does nothing for ever.
+IDLE = image(b"\xff\xcf")
+
+
+def tilenca(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "tilenca.cli", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)
+
+
+@pytest.fixture(scope="module")
+def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The firmware as `tilenca flash` builds it: a copy of the ELF, and of the HEX beside it."""
+    build()
+    folder = tmp_path_factory.mktemp("firmware")
+    for suffix in (".elf", ".hex"):
+        shutil.copy(paths.FIRMWARE_ELF.with_suffix(suffix), folder)
+    return folder / paths.FIRMWARE_ELF.name
+
+
+@pytest.fixture(scope="module")
+def served(firmware: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The pattern of the ports of a `1` of three emulated tiles."""
+    folder = tmp_path_factory.mktemp("served") / "tiles"
+    shapes = str(paths.SHAPES / "digits-3x3.toml")
+    command = [
+        sys.executable,
+        "-m",
+        "tilenca.cli",
+        "emulate",
+        "--shapes",
+        shapes,
+        "--shape",
+        "1",
+        "--elf",
+        str(firmware),
+        "--serve",
+        str(folder),
+    ]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, bufsize=0) as serving:
+        assert serving.stderr is not None
+        ready, _, _ = select.select([serving.stderr], [], [], LIMIT_S)
+        said = os.read(serving.stderr.fileno(), 4096).decode() if ready else "nothing"
+        assert "serving 3 tiles" in said, said
+        yield f"{folder}/tile-*"
+        serving.send_signal(signal.SIGINT)
+        serving.communicate(timeout=LIMIT_S)
+
+
+def heard(served: str) -> list[dict[str, Any]]:
+    """What the monitor hears within two seconds of opening the ports, which resets the tiles."""
+    done = tilenca("monitor", "--json", "--seconds", "2", "--port", served)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def flash(served: str, firmware: Path) -> None:
+    done = tilenca("flash", "--json", "--hex", str(firmware), "--port", served)
+    assert done.returncode == 0, done.stderr
+    results = json.loads(done.stdout)["tiles"]
+    assert [(Path(tile["port"]).name, tile["result"]) for tile in results] == [
+        (f"tile-0{number}", "flashed") for number in (1, 2, 3)
+    ]
+
+
+def test_devices_lists_served_tiles(served: str) -> None:
+    done = tilenca("devices", "--json", "--port", served)
+    assert done.returncode == 0, done.stderr
+    assert [Path(device["port"]).name for device in json.loads(done.stdout)["devices"]] == [
+        "tile-01",
+        "tile-02",
+        "tile-03",
+    ]
+
+
+def test_tiles_are_programmed_side_by_side_and_run_what_was_written(
+    served: str, firmware: Path, tmp_path: Path
+) -> None:
+    idle = tmp_path / "idle.hex"
+    idle.write_text(IDLE)
+    flash(served, idle)
+    assert heard(served) == [], "the idle program says nothing"
+    flash(served, firmware.with_suffix(".hex"))
+    sentences = heard(served)
+    for number in (1, 2, 3):
+        mine = [sentence for sentence in sentences if sentence["port"].endswith(f"tile-0{number}")]
+        assert {sentence["tile"] for sentence in mine} == {number}
+        assert mine[0]["type"] == "HELLO"
+        assert {sentence["type"] for sentence in mine} == {"HELLO", "TILE", "LINK"}
+        last = next(sentence for sentence in reversed(mine) if sentence["type"] == "TILE")
+        assert last["fields"]["links"] == ["--S-", "N-S-", "N---"][number - 1]
