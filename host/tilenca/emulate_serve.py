@@ -1,0 +1,114 @@
+"""Emulated tiles as serial ports: a pseudo-terminal for each tile's USB, in step with the wall clock.
+
+As on a real board, opening the port resets the tile: into its bootloader, if it has one.
+"""
+
+import os
+import select
+import sys
+import time
+import tty
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+from tilenca.emulation import Emulation, port_name
+from tilenca.emulator import EmulatedTile
+from tilenca.errors import UsageError
+
+STOCK_BOOTLOADER = Path(
+    "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
+)
+STEP_S = 0.005
+# An emulation that cannot keep up gives up the time it lost, rather than stop listening to its ports.
+MAX_LAG_S = 0.1
+READ_BYTES = 4096
+
+
+class ServedTile:
+    """One tile's pseudo-terminal and the link that names it."""
+
+    def __init__(self, tile: EmulatedTile, link: Path, reset_on_open: bool) -> None:
+        """Creates the pseudo-terminal; raises UsageError if the link cannot be made."""
+        self._tile, self._link, self._reset_on_open = tile, link, reset_on_open
+        self._master, slave = os.openpty()
+        tty.setraw(slave)
+        self._name = os.ttyname(slave)
+        # With our own end closed, the hang-up that poll() reports tells whether anybody has the port open.
+        os.close(slave)
+        os.set_blocking(self._master, False)
+        self._is_open = False
+        self._baud = 115200
+        self._poll = select.poll()
+        self._poll.register(self._master, select.POLLIN)
+        try:
+            if link.is_symlink():
+                link.unlink()  # left by a run that was killed
+            link.symlink_to(self._name)
+        except OSError as error:
+            os.close(self._master)
+            raise UsageError(
+                f"{link}: {error.strerror}; give --serve a directory that can be written"
+            ) from error
+
+    def exchange(self) -> None:
+        """Passes on what came in either direction since the last call."""
+        events = dict(self._poll.poll(0)).get(self._master, 0)
+        was_open, self._is_open = self._is_open, not events & select.POLLHUP
+        if self._is_open and not was_open and self._reset_on_open:
+            self._tile.reset()
+        if events & select.POLLIN:
+            with suppress(OSError):  # closed between poll and read
+                self._tile.write_serial(os.read(self._master, READ_BYTES))
+        said = self._tile.read_serial()
+        if said and self._is_open:
+            with suppress(BlockingIOError):  # nobody reads: the bytes are lost, as on USB
+                os.write(self._master, said)
+
+    def close(self) -> None:
+        """Removes the link and the pseudo-terminal."""
+        if self._link.is_symlink() and str(self._link.readlink()) == self._name:
+            self._link.unlink()
+        os.close(self._master)
+
+
+def serve(emulation: Emulation, directory: Path, seconds: float | None, reset_on_open: bool) -> None:
+    """Serves all tiles until `seconds` have passed on the wall clock, or for ever.
+
+    Raises:
+        UsageError: the directory cannot be used.
+        TilencaError: a tile stopped at a fault.
+    """
+    created = not directory.exists()
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(
+            f"{directory}: {error.strerror}; give --serve a directory that can be written"
+        ) from error
+    with ExitStack() as stack:
+        if created:
+            stack.callback(_remove, directory)
+        served = []
+        for tile in emulation.array:
+            served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
+            stack.callback(served[-1].close)
+        print(
+            f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it", file=sys.stderr, flush=True
+        )
+        _keep_step(emulation, served, seconds)
+
+
+def _keep_step(emulation: Emulation, served: list[ServedTile], seconds: float | None) -> None:
+    started = last = time.monotonic()
+    while seconds is None or last - started < seconds:
+        time.sleep(max(0.0, last + STEP_S - time.monotonic()))
+        now = time.monotonic()
+        emulation.array.run(min(now - last, MAX_LAG_S))
+        last = now
+        for port in served:
+            port.exchange()
+
+
+def _remove(directory: Path) -> None:
+    with suppress(OSError):  # somebody else has put something there
+        directory.rmdir()

@@ -1,0 +1,91 @@
+"""Loading ELF and Intel HEX files: good ones, wrong ones, damaged ones, and noise."""
+
+import random
+from pathlib import Path
+
+import pytest
+from conftest import Compile, run_tool
+from tilenca.emulator import Array
+from tilenca.errors import BuildError, UsageError
+
+PROGRAM = "EEMEM uint8_t stored = 0x42; int main(void) { result[0] = 7; for (;;) { } }"
+
+
+def test_an_elf_brings_flash_and_eeprom(avr: Compile) -> None:
+    array = Array(avr(PROGRAM + "uint8_t *keep = &stored;"))
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 1) == b"\x07"
+    assert array[0].read_eeprom(0, 2) == b"\x42\xff"
+
+
+def test_intel_hex_gives_the_same_flash(avr: Compile, tmp_path: Path) -> None:
+    elf, hexadecimal = avr(PROGRAM), tmp_path / "program.hex"
+    run_tool("avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, hexadecimal)
+    assert Array(hexadecimal)[0].read_flash(0, 4096) == Array(elf)[0].read_flash(0, 4096)
+
+
+def refused(path: Path, content: bytes) -> str:
+    path.write_bytes(content)
+    with pytest.raises(BuildError) as caught:
+        Array(path)
+    message = str(caught.value)
+    assert message.startswith(str(path)) and ";" in message and "\n" not in message
+    return message
+
+
+def patched(content: bytes, offset: int, value: int) -> bytes:
+    return content[:offset] + value.to_bytes(2, "little") + content[offset + 2 :]
+
+
+def test_refusals_name_file_fact_and_remedy(avr: Compile, tmp_path: Path) -> None:
+    good, bad = avr(PROGRAM).read_bytes(), tmp_path / "bad.elf"
+    assert "e_machine 62, AVR is 83" in refused(bad, patched(good, 18, 62))
+    assert "AVR architecture 5" in refused(bad, good[:36] + b"\x85" + good[37:])
+    assert "truncated: a segment" in refused(bad, good[:200])
+    assert "truncated: the header" in refused(bad, good[:20])
+    assert "not a linked program" in refused(bad, patched(good, 16, 1))
+    assert "neither an ELF nor an Intel HEX" in refused(bad, b"hello, world")
+    assert "empty" in refused(bad, b"")
+    assert ":1: not a sound Intel HEX record" in refused(bad, b":0000000\n")
+    assert "no end record" in refused(bad, b":0100000001FE\n")
+    with pytest.raises(BuildError, match="No such file"):
+        Array(tmp_path / "missing.elf")
+
+
+def test_an_object_file_is_no_program(avr: Compile, tmp_path: Path) -> None:
+    assert "not a linked program" in refused(tmp_path / "object.elf", avr(PROGRAM, "-c").read_bytes())
+
+
+@pytest.mark.parametrize("kind", ["elf", "hex"])
+def test_damaged_images_are_refused_or_loaded_but_never_crash(avr: Compile, tmp_path: Path, kind: str) -> None:
+    draw = random.Random(7)
+    elf, victim = avr(PROGRAM, "-g"), tmp_path / "victim"
+    good = elf.read_bytes()
+    if kind == "hex":
+        run_tool("avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, tmp_path / "good.hex")
+        good = (tmp_path / "good.hex").read_bytes()
+    outcomes = set()
+    for _ in range(400):
+        damaged = bytearray(good[: draw.randrange(1, len(good))] if draw.random() < 0.2 else good)
+        # Most of what can go wrong is said in the headers: half of the damage goes there.
+        reach = min(len(damaged), 52 + 3 * 32) if draw.random() < 0.5 else len(damaged)
+        for _ in range(draw.randrange(1, 6)):
+            damaged[draw.randrange(reach)] = draw.choice([0, 0xFF, 0x7F, 0x80, draw.randrange(256)])
+        victim.write_bytes(damaged)
+        try:
+            with Array(victim):
+                outcomes.add("loaded")
+        except BuildError as error:
+            assert "\n" not in str(error)
+            outcomes.add("refused")
+    assert outcomes == {"loaded", "refused"} if kind == "elf" else "refused" in outcomes
+
+
+def test_arguments_that_do_not_fit_are_refused(avr: Compile) -> None:
+    elf = avr(PROGRAM)
+    with pytest.raises(UsageError, match="2 clock errors"):
+        Array(elf, 3, ppm=[0.0, 1.0])
+    with pytest.raises(UsageError, match="tiles are 0 to 1"):
+        Array(elf, 2, [(0, 1, 2, 3)])
+    with pytest.raises(UsageError, match="beyond"):
+        Array(elf)[0].read_memory(0x2000, 0x300)

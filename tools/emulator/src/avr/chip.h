@@ -1,0 +1,85 @@
+// A whole ATmega2560: the core and everything around it. Knows nothing of the board it sits on.
+#pragma once
+
+#include "avr/adc.h"
+#include "avr/eeprom.h"
+#include "avr/gpio.h"
+#include "avr/self_programming.h"
+#include "avr/timer.h"
+#include "avr/usart.h"
+#include "avr/vectors.h"
+#include "avr/watchdog.h"
+
+#include <memory>
+
+namespace tilenca::avr {
+
+constexpr double kNominalHz = 16e6;
+
+// Bits of MCUSR.
+enum class ResetCause : uint8_t { PowerOn = 1, External = 2, BrownOut = 4, Watchdog = 8 };
+
+struct Fuses {
+    bool reset_to_boot = false; // BOOTRST
+};
+
+class Chip : private Bus {
+  public:
+    Chip(std::shared_ptr<Program> program, const Fuses& fuses);
+    ~Chip() override;
+    Chip(const Chip&) = delete;
+    Chip& operator=(const Chip&) = delete;
+
+    void reset(ResetCause cause);
+    // Runs until `cycle` is reached or passed, or a fault stops the core.
+    void run_until(uint64_t cycle) { cpu_.run(cycle); }
+    void step() { cpu_.step(); }
+
+    Cpu& cpu() { return cpu_; }
+    Gpio& gpio() { return *gpio_; }
+    Eeprom& eeprom() { return *eeprom_; }
+    Adc& adc() { return *adc_; }
+    Usart& usart(unsigned number) { return *usarts_[number]; }
+    const Warnings& warnings() const { return warnings_; }
+    // Changes the level of an input from `cycle` on; the pin has a line attached.
+    void push_edge(PinId pin, uint64_t cycle, bool level);
+    // Share of time (0..1) an output is high now.
+    double duty(PinId pin);
+    // When the core next does anything at all: kNever if it sleeps for good.
+    uint64_t wakes_at();
+
+  private:
+    uint8_t read(uint16_t address, uint64_t cycle) override;
+    void write(uint16_t address, uint8_t value, uint64_t cycle) override;
+    void write_bit(uint16_t address, uint8_t mask, bool value, uint64_t cycle) override;
+    uint64_t serve_events(uint64_t cycle) override;
+    void interrupt_taken(uint8_t vector, uint64_t cycle) override;
+    void watchdog_reset(uint64_t cycle) override { watchdog_->restart(cycle); }
+    uint32_t store_program_memory(uint64_t cycle, bool advance_z) override;
+    void address_outside_memory(uint16_t address, bool write) override;
+
+    void attach(Peripheral& peripheral);
+    void write_system(uint16_t address, uint8_t value, uint64_t cycle);
+    void synchronise_prescalers(uint8_t value, uint64_t cycle);
+    Peripheral& at_slot(Slot slot);
+
+    std::shared_ptr<Program> program_;
+    Fuses fuses_;
+    Cpu cpu_;
+    Schedule schedule_;
+    Warnings warnings_;
+    std::unique_ptr<Gpio> gpio_;
+    std::unique_ptr<Eeprom> eeprom_;
+    std::unique_ptr<Adc> adc_;
+    std::unique_ptr<Watchdog> watchdog_;
+    std::unique_ptr<SelfProgramming> self_programming_;
+    std::array<std::unique_ptr<Timer>, 6> timers_;
+    std::array<std::unique_ptr<Usart>, 4> usarts_;
+    std::array<Peripheral*, kSramStart> at_address_{};
+    std::array<Peripheral*, kVectors> at_vector_{};
+    std::vector<Peripheral*> all_;
+    uint64_t vectors_movable_until_ = 0;
+    bool told_read_ = false, told_write_ = false;
+};
+
+} // namespace tilenca::avr

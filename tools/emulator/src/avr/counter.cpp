@@ -1,0 +1,229 @@
+#include "avr/counter.h"
+
+#include <algorithm>
+
+namespace tilenca::avr {
+
+void Counter::reset() {
+    *this = Counter(max_);
+}
+
+uint16_t Counter::top() const {
+    switch (mode_.top) {
+    case Top::CompareA:
+        return compares_[0];
+    case Top::Capture:
+        return capture_;
+    default:
+        return mode_.fixed_top;
+    }
+}
+
+uint64_t Counter::period() const {
+    const uint64_t last = top();
+    return is_two_way() ? std::max<uint64_t>(2 * last, 1) : last + 1;
+}
+
+void Counter::set_mode(const WaveMode& mode) {
+    mode_ = mode;
+    if (!is_pwm()) {
+        load_buffers();
+    }
+    down_ = down_ && is_two_way();
+}
+
+void Counter::set_count(uint16_t count) {
+    count_ = count;
+    blocked_ = true;
+}
+
+void Counter::set_compare(unsigned channel, uint16_t value) {
+    buffers_[channel] = value;
+    if (!is_pwm()) {
+        compares_[channel] = value;
+    }
+}
+
+uint64_t Counter::ticks_to_boundary() const {
+    uint64_t soonest = down_ ? count_ + 1u : max_ - count_ + 1u;
+    const auto consider = [&](uint16_t value) {
+        if (!down_ && value >= count_) {
+            soonest = std::min<uint64_t>(soonest, value - count_ + 1u);
+        } else if (down_ && value <= count_) {
+            soonest = std::min<uint64_t>(soonest, count_ - value + 1u);
+        }
+    };
+    for (const uint16_t value : compares_) {
+        consider(value);
+    }
+    if (!down_) {
+        consider(top());
+    }
+    return soonest;
+}
+
+void Counter::advance(uint64_t ticks) {
+    // After two whole periods all flags are set and all buffers loaded: the rest repeats itself.
+    if (ticks > 4 * period() && count_ <= top()) {
+        const uint64_t skipped = (ticks - 2 * period()) / period();
+        ticks -= skipped * period();
+        advance(2 * period());
+        ticks -= 2 * period();
+        for (unsigned channel = 0; channel < 3; channel++) {
+            if (toggles(channel) && !is_two_way() && compares_[channel] <= top() && skipped % 2 != 0) {
+                levels_[channel] = !levels_[channel];
+            }
+        }
+    }
+    while (ticks != 0) {
+        const uint64_t step = ticks_to_boundary();
+        const uint64_t taken = std::min(step, ticks);
+        const auto passed = static_cast<uint16_t>(taken == step ? step - 1 : taken);
+        count_ = static_cast<uint16_t>(down_ ? count_ - passed : count_ + passed);
+        blocked_ = blocked_ && passed == 0;
+        if (taken == step) {
+            leave();
+        }
+        ticks -= taken;
+    }
+}
+
+// The tick that leaves the present value.
+void Counter::leave() {
+    for (unsigned channel = 0; channel < 3; channel++) {
+        if (compares_[channel] == count_ && !blocked_) {
+            flags |= static_cast<uint8_t>(kFlagCompareA << channel);
+            if (!is_pwm() || toggles(channel)) {
+                act(channel);
+            }
+        }
+    }
+    blocked_ = false;
+    turn_or_wrap(top());
+}
+
+void Counter::turn_or_wrap(uint16_t top) {
+    if (down_) {
+        if (count_ == 0) {
+            flags |= kFlagOverflow;
+            down_ = false;
+            if (mode_.wave == Wave::PhaseAndFrequencyCorrect) {
+                load_buffers();
+            }
+            count_ = this->top() == 0 ? 0 : 1;
+        } else {
+            count_--;
+        }
+        return;
+    }
+    const bool at_top = count_ == top && mode_.wave != Wave::Normal;
+    if (at_top && mode_.top == Top::Capture) {
+        flags |= kFlagCapture;
+    }
+    if (is_two_way() && (at_top || count_ == max_)) {
+        down_ = true;
+        if (mode_.wave == Wave::PhaseCorrect) {
+            load_buffers();
+        }
+        count_ = static_cast<uint16_t>(count_ == 0 ? 0 : count_ - 1);
+    } else if (at_top || count_ == max_) {
+        if (mode_.wave == Wave::Fast) {
+            flags |= at_top ? kFlagOverflow : 0;
+            load_buffers();
+        } else if (count_ == max_) {
+            flags |= kFlagOverflow;
+        }
+        count_ = 0;
+    } else {
+        count_++;
+    }
+}
+
+void Counter::act(unsigned channel) {
+    switch (actions_[channel]) {
+    case 1:
+        levels_[channel] = !levels_[channel];
+        break;
+    case 2:
+        levels_[channel] = false;
+        break;
+    case 3:
+        levels_[channel] = true;
+        break;
+    default:
+        break;
+    }
+}
+
+uint64_t Counter::ticks_to_leave(uint16_t value, bool either_way) const {
+    const uint64_t last = top();
+    if (count_ > last) { // beyond its top the counter first runs on to its end
+        const uint64_t to_zero = is_two_way() ? count_ : max_ - count_ + 1u;
+        return !is_two_way() && value >= count_ ? value - count_ + 1u : to_zero + 1;
+    }
+    if (value > last) {
+        return 0;
+    }
+    if (!is_two_way()) {
+        return (value >= count_ ? value - count_ : last + 1 - count_ + value) + 1;
+    }
+    const uint64_t whole = period(), position = down_ ? (2 * last - count_) % whole : count_;
+    const uint64_t rising = (value + whole - position) % whole,
+                   falling = (2 * whole - value - position) % whole;
+    return (either_way ? std::min(rising, falling) : rising) + 1;
+}
+
+uint64_t Counter::ticks_to_reload() const {
+    if (!is_pwm() || compares_ == buffers_) {
+        return 0;
+    }
+    return ticks_to_leave(mode_.wave == Wave::PhaseAndFrequencyCorrect ? 0 : top(), true);
+}
+
+uint64_t Counter::ticks_to_flag(uint8_t mask) const {
+    uint64_t soonest = 0;
+    const auto consider = [&soonest](uint64_t ticks) {
+        if (ticks != 0 && (soonest == 0 || ticks < soonest)) {
+            soonest = ticks;
+        }
+    };
+    for (unsigned channel = 0; channel < 3; channel++) {
+        if ((mask & kFlagCompareA << channel) != 0) {
+            consider(ticks_to_leave(compares_[channel], true));
+        }
+    }
+    if ((mask & kFlagOverflow) != 0) {
+        const bool at_max = mode_.wave == Wave::Normal || mode_.wave == Wave::Ctc;
+        consider(ticks_to_leave(is_two_way() ? 0 : (at_max ? max_ : top()), true));
+    }
+    if ((mask & kFlagCapture) != 0 && mode_.top == Top::Capture) {
+        consider(ticks_to_leave(capture_, true));
+    }
+    if (soonest != 0) {
+        consider(ticks_to_reload());
+    }
+    return soonest;
+}
+
+bool Counter::level(unsigned channel) const {
+    if (!is_pwm() || toggles(channel)) {
+        return levels_[channel];
+    }
+    const bool high = is_two_way() ? count_ < compares_[channel] : count_ <= compares_[channel];
+    return high == (actions_[channel] == 2);
+}
+
+double Counter::duty(unsigned channel) const {
+    if (toggles(channel)) {
+        return 0.5;
+    }
+    if (!is_pwm()) {
+        return levels_[channel] ? 1.0 : 0.0;
+    }
+    const double last = top();
+    const double value = std::min<double>(compares_[channel], last);
+    const double high = is_two_way() ? (last == 0 ? 0.0 : value / last) : (value + 1) / (last + 1);
+    return actions_[channel] == 2 ? high : 1.0 - high;
+}
+
+} // namespace tilenca::avr

@@ -1,0 +1,178 @@
+#include "avr/cpu.h"
+
+#include "avr/ops.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tilenca::avr {
+
+namespace {
+
+constexpr uint64_t kInterruptCycles = 5; // with three bytes of return address
+constexpr uint64_t kWakeCycles = 5;      // more, when the interrupt ends a sleep
+
+} // namespace
+
+namespace ops {
+
+void leave(TILENCA_STATE) {
+    cpu->at = at;
+    cpu->cycle = cycle;
+    cpu->carry = carry;
+    cpu->zero = zero;
+    cpu->nvh = nvh;
+}
+
+void stop(TILENCA_STATE, const char* reason) {
+    leave(cpu, at, cycle, carry, zero, nvh);
+    cpu->fault = reason;
+}
+
+uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh) {
+    if (address < kIoStart) {
+        return cpu->data[address];
+    }
+    if (address == kStatus) {
+        cpu->carry = carry;
+        cpu->zero = zero;
+        cpu->nvh = nvh;
+        return cpu->status();
+    }
+    if (address >= kDataBytes) {
+        cpu->bus->address_outside_memory(address, false);
+        return 0;
+    }
+    const bool special = address < kSramStart && cpu->special[address];
+    return special ? cpu->bus->read(address, cycle) : cpu->data[address];
+}
+
+void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint32_t carry, uint32_t zero,
+                uint32_t nvh) {
+    cpu->carry = carry;
+    cpu->zero = zero;
+    cpu->nvh = nvh;
+    if (address == kStatus) {
+        if ((value & 0x80) != 0 && !cpu->interrupts_on) {
+            cpu->held_until = cycle + 1;
+            if (cpu->requests != 0) {
+                cpu->end_soon();
+            }
+        }
+        cpu->set_status(value);
+    } else if (address >= kDataBytes) {
+        cpu->bus->address_outside_memory(address, true);
+    } else if (address >= kIoStart && address < kSramStart && cpu->special[address]) {
+        cpu->bus->write(address, value, cycle);
+    } else {
+        cpu->data[address] = value;
+    }
+}
+
+} // namespace ops
+
+void Cpu::use(const Program& image) {
+    const uint32_t word = program == nullptr ? 0 : pc();
+    program = image.instructions();
+    flash = image.bytes();
+    at = program + word;
+}
+
+void Cpu::reset(uint32_t start_word) {
+    at = program + start_word;
+    set_status(0);
+    requests = 0;
+    held_until = 0;
+    stall_cycles = 0;
+    vector_base = 0;
+    asleep = sleep_enabled = false;
+    std::memset(data + kIoStart, 0, kSramStart - kIoStart);
+    ops::set_pair(this, ops::kStackPointer, kDataBytes - 1);
+    end_soon();
+}
+
+uint8_t Cpu::status() const {
+    const bool negative = ops::is_negative(nvh), overflow = ops::is_overflow(nvh);
+    return static_cast<uint8_t>(carry | (zero == 0) << 1 | negative << 2 | overflow << 3 |
+                                ops::is_signed_less(nvh) << 4 | ops::is_half(nvh) << 5 | transfer << 6 |
+                                interrupts_on << 7);
+}
+
+void Cpu::set_status(uint8_t value) {
+    carry = value & 1;
+    zero = (value & 2) == 0;
+    const bool sign_differs = ((value >> 4 ^ value >> 3 ^ value >> 2) & 1) != 0;
+    nvh = ops::pack((value & 4u) << 5, (value & 8u) << 4, (value & 0x20u) >> 1) | uint32_t{sign_differs}
+                                                                                      << 31;
+    transfer = (value & 0x40) != 0;
+    interrupts_on = (value & 0x80) != 0;
+}
+
+void Cpu::request(uint8_t vector, bool active) {
+    const uint64_t bit = uint64_t{1} << vector;
+    if (!active) {
+        requests &= ~bit;
+    } else if ((requests & bit) == 0) {
+        requests |= bit;
+        if (interrupts_on) {
+            end_soon();
+        }
+    }
+}
+
+void Cpu::take_interrupt() {
+    const auto vector = static_cast<uint8_t>(__builtin_ctzll(requests));
+    cycle += kInterruptCycles + (asleep ? kWakeCycles : 0);
+    sleep_cycles += asleep ? kWakeCycles : 0;
+    asleep = false;
+    interrupts_on = false;
+    const uint32_t word = pc();
+    uint16_t top = ops::pair(this, ops::kStackPointer);
+    for (unsigned i = 0; i < 3; i++, top--) {
+        ops::write_slow(this, top, static_cast<uint8_t>(word >> (8 * i)), cycle, carry, zero, nvh);
+    }
+    ops::set_pair(this, ops::kStackPointer, top);
+    at = program + vector_base + vector * 2;
+    bus->interrupt_taken(vector, cycle);
+}
+
+void Cpu::run(uint64_t until) {
+    while (cycle < until && fault.empty()) {
+        const uint64_t next_event = bus->serve_events(cycle);
+        const bool wanted = requests != 0 && interrupts_on;
+        if (wanted && cycle > held_until) {
+            take_interrupt();
+            continue; // an event can have fallen due meanwhile, and rank first
+        }
+        limit = std::min(until, next_event);
+        if (asleep && !wanted) {
+            sleep_cycles += limit - cycle;
+            cycle = limit;
+            continue;
+        }
+        if (wanted) {
+            limit = std::min(limit, cycle + 1);
+        }
+        asleep = false;
+        at->run(this, at, cycle, carry, zero, nvh);
+    }
+}
+
+void Cpu::step() {
+    const uint64_t next_event = bus->serve_events(cycle);
+    const bool wanted = requests != 0 && interrupts_on;
+    if (wanted && cycle > held_until) {
+        take_interrupt();
+        return;
+    }
+    if (asleep) {
+        sleep_cycles += next_event - cycle;
+        cycle = next_event;
+        return;
+    }
+    limit = 0;
+    instructions++;
+    at->run(this, at, cycle, carry, zero, nvh);
+}
+
+} // namespace tilenca::avr

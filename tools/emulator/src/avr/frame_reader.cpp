@@ -1,0 +1,51 @@
+#include "avr/frame_reader.h"
+
+#include <cmath>
+
+namespace tilenca::avr {
+
+namespace {
+
+bool majority(const Line& line, const Sampling& sampling, unsigned bit) {
+    int high = 0;
+    for (int back = 0; back < 3; back++) {
+        const double when = sampling.decided(bit) - back * sampling.period;
+        high += line.level_at(static_cast<uint64_t>(std::floor(when)));
+    }
+    return high >= 2;
+}
+
+} // namespace
+
+bool FrameFormat::parity_of(uint16_t data) const {
+    const bool odd = __builtin_parity(data);
+    return parity == 3 ? !odd : odd;
+}
+
+uint16_t FrameFormat::encode(uint16_t data) const {
+    unsigned at = 1; // after the start bit, a zero
+    unsigned bits = (data & ((1u << data_bits) - 1)) << at;
+    at += data_bits;
+    if (parity != 0) {
+        bits |= static_cast<unsigned>(parity_of(data & ((1u << data_bits) - 1))) << at++;
+    }
+    return static_cast<uint16_t>(bits | ((1u << stop_bits) - 1) << at);
+}
+
+ReceivedFrame read_frame(const Line& line, const Sampling& sampling, const FrameFormat& format) {
+    ReceivedFrame frame;
+    frame.started = !majority(line, sampling, 0);
+    if (!frame.started) {
+        return frame;
+    }
+    for (unsigned i = 0; i < format.data_bits; i++) {
+        frame.data |= static_cast<uint16_t>(majority(line, sampling, i + 1) << i);
+    }
+    if (format.parity != 0) {
+        frame.parity_error = majority(line, sampling, format.data_bits + 1u) != format.parity_of(frame.data);
+    }
+    frame.framing_error = !majority(line, sampling, format.received_bits() - 1);
+    return frame;
+}
+
+} // namespace tilenca::avr

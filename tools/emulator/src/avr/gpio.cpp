@@ -1,0 +1,308 @@
+#include "avr/gpio.h"
+
+#include "avr/vectors.h"
+
+#include <algorithm>
+
+namespace tilenca::avr {
+
+namespace {
+
+constexpr uint16_t kPcifr = 0x3B, kEifr = 0x3C, kEimsk = 0x3D, kPcicr = 0x68, kEicra = 0x69, kEicrb = 0x6A;
+constexpr uint16_t kPcmsk0 = 0x6B; // PCMSK1 and PCMSK2 follow
+constexpr uint8_t kPortB = port_index('B'), kPortD = port_index('D'), kPortE = port_index('E');
+constexpr uint8_t kPortJ = port_index('J'), kPortK = port_index('K');
+
+constexpr uint8_t bit_of(PinId pin) {
+    return static_cast<uint8_t>(1 << pin.bit);
+}
+
+} // namespace
+
+Gpio::Gpio(const Core& core) : Peripheral(core) {
+    for (unsigned i = 0; i < kPorts; i++) {
+        ports_[i].base = static_cast<uint16_t>(i < 7 ? 0x20 + 3 * i : 0x100 + 3 * (i - 7));
+    }
+}
+
+std::vector<uint16_t> Gpio::registers() const {
+    std::vector<uint16_t> all = {kPcifr, kEifr,   kEimsk,      kPcicr,     kEicra,
+                                 kEicrb, kPcmsk0, kPcmsk0 + 1, kPcmsk0 + 2};
+    for (const Port& port : ports_) {
+        all.insert(all.end(),
+                   {port.base, static_cast<uint16_t>(port.base + 1), static_cast<uint16_t>(port.base + 2)});
+    }
+    return all;
+}
+
+Gpio::Port* Gpio::port_of(uint16_t address, unsigned* which) {
+    for (Port& port : ports_) {
+        if (address >= port.base && address < port.base + 3) {
+            *which = address - port.base;
+            return &port;
+        }
+    }
+    return nullptr;
+}
+
+uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
+    unsigned which = 0;
+    if (Port* port = port_of(address, &which); port != nullptr && which == 0) {
+        update(*port, cycle);
+        return port->levels;
+    }
+    return byte(address);
+}
+
+void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
+    unsigned which = 0;
+    if (address == kPcifr || address == kEifr) {
+        byte(address) &= static_cast<uint8_t>(~value);
+    } else if (Port* port = port_of(address, &which); port != nullptr) {
+        if (which == 0) {
+            byte(static_cast<uint16_t>(port->base + 2)) ^= value; // a one written to PIN toggles PORT
+        } else {
+            byte(address) = value;
+        }
+        output_changes_++;
+        update(*port, cycle);
+        return;
+    } else {
+        byte(address) = value;
+        update_watched(cycle);
+    }
+    update_requests();
+}
+
+uint8_t Gpio::compute_levels(Port& port, uint64_t cycle) {
+    const uint8_t ddr = byte(static_cast<uint16_t>(port.base + 1)),
+                  latch = byte(static_cast<uint16_t>(port.base + 2));
+    uint8_t outside = port.held;
+    for (unsigned bit = 0; port.has_lines >> bit != 0; bit++) {
+        if (port.lines[bit] != nullptr && !port.lines[bit]->level_at(cycle)) {
+            outside &= static_cast<uint8_t>(~(1 << bit));
+        }
+    }
+    uint8_t driven = latch;
+    const auto index = static_cast<uint8_t>(&port - ports_.data());
+    for (uint8_t bit = 0; port.taken >> bit != 0; bit++) {
+        if (port.sources[bit] != nullptr && (port.taken >> bit & 1) != 0) {
+            const bool high = port.sources[bit]->pin_level({index, bit}, cycle);
+            driven = static_cast<uint8_t>((driven & ~(1 << bit)) | high << bit);
+        }
+    }
+    return static_cast<uint8_t>((driven & ddr) | (outside & ~ddr));
+}
+
+void Gpio::update(Port& port, uint64_t cycle) {
+    const uint8_t before = port.levels, after = compute_levels(port, cycle);
+    if (before == after) {
+        return;
+    }
+    port.levels = after;
+    const auto index = static_cast<uint8_t>(&port - ports_.data());
+    const auto changed = static_cast<uint8_t>(before ^ after);
+    for (uint8_t bit = 0; bit < 8; bit++) {
+        // What a USART has taken over is announced by it alone.
+        const bool ours = (port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr;
+        if ((changed & port.watched_out) >> bit & 1 && ours) {
+            port.listeners[bit]->edge({index, bit}, cycle, (after >> bit & 1) != 0);
+        }
+    }
+    pins_changed(port, before, after, cycle);
+}
+
+void Gpio::announce(PinId pin, uint64_t cycle, bool level) {
+    if (EdgeListener* listener = ports_[pin.port].listeners[pin.bit]; listener != nullptr) {
+        listener->edge(pin, cycle, level);
+    }
+}
+
+void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycle) {
+    Port& port = ports_[pin.port];
+    update(port, cycle);
+    if (as_output) {
+        port.taken |= bit_of(pin);
+        port.sources[pin.bit] = source;
+    }
+    output_changes_++;
+    update(port, cycle);
+}
+
+void Gpio::release(PinId pin, uint64_t cycle) {
+    Port& port = ports_[pin.port];
+    const bool was_silent = (port.taken & bit_of(pin)) != 0 && port.sources[pin.bit] == nullptr;
+    port.taken &= static_cast<uint8_t>(~bit_of(pin));
+    port.sources[pin.bit] = nullptr;
+    output_changes_++;
+    update(port, cycle);
+    if (was_silent) {
+        announce(pin, cycle, level(pin, cycle));
+    }
+}
+
+Line& Gpio::attach_line(PinId pin) {
+    Port& port = ports_[pin.port];
+    port.lines[pin.bit] = std::make_unique<Line>();
+    port.has_lines |= bit_of(pin);
+    return *port.lines[pin.bit];
+}
+
+void Gpio::line_changed(PinId pin) {
+    Port& port = ports_[pin.port];
+    if ((port.watched_in & bit_of(pin)) != 0) {
+        schedule_lines(core_.cpu.cycle);
+    }
+}
+
+void Gpio::hold_input(PinId pin, bool level, uint64_t cycle) {
+    Port& port = ports_[pin.port];
+    port.held = static_cast<uint8_t>((port.held & ~bit_of(pin)) | level << pin.bit);
+    update(port, cycle);
+}
+
+void Gpio::listen(PinId pin, EdgeListener* listener) {
+    ports_[pin.port].listeners[pin.bit] = listener;
+    ports_[pin.port].watched_out |= bit_of(pin);
+}
+
+bool Gpio::level(PinId pin, uint64_t cycle) {
+    update(ports_[pin.port], cycle);
+    return (ports_[pin.port].levels >> pin.bit & 1) != 0;
+}
+
+bool Gpio::is_output(PinId pin) const {
+    return (byte(static_cast<uint16_t>(ports_[pin.port].base + 1)) >> pin.bit & 1) != 0;
+}
+
+bool Gpio::port_bit(PinId pin) const {
+    return (byte(static_cast<uint16_t>(ports_[pin.port].base + 2)) >> pin.bit & 1) != 0;
+}
+
+void Gpio::reset(uint64_t cycle) {
+    for (Port& port : ports_) {
+        port.taken = port.watched_in = 0;
+        port.sources.fill(nullptr);
+        update(port, cycle);
+    }
+    core_.schedule.cancel(Slot::Lines);
+}
+
+// --- interrupts
+// -----------------------------------------------------------------------------------------------
+
+std::vector<uint8_t> Gpio::vectors() const {
+    std::vector<uint8_t> all;
+    for (uint8_t vector = kVectorInt0; vector < kVectorPinChange0 + 3; vector++) {
+        all.push_back(vector);
+    }
+    return all;
+}
+
+void Gpio::interrupt_taken(uint8_t vector) {
+    if (vector < kVectorPinChange0) {
+        byte(kEifr) &= static_cast<uint8_t>(~(1 << (vector - kVectorInt0)));
+    } else {
+        byte(kPcifr) &= static_cast<uint8_t>(~(1 << (vector - kVectorPinChange0)));
+    }
+    update_requests();
+}
+
+// How INT0..7 is triggered: 0 low level, 1 any edge, 2 falling, 3 rising.
+uint8_t Gpio::sense(unsigned number) const {
+    const uint8_t control = byte(number < 4 ? kEicra : kEicrb);
+    return control >> (number % 4 * 2) & 3;
+}
+
+void Gpio::external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift) {
+    for (unsigned i = 0; i < 4; i++) {
+        const bool was = (before >> (i + shift) & 1) != 0, is = (after >> (i + shift) & 1) != 0;
+        const uint8_t how = sense(first + i);
+        if (was != is && (how == 1 || (how == 2 && !is) || (how == 3 && is))) {
+            byte(kEifr) |= static_cast<uint8_t>(1 << (first + i));
+        }
+    }
+}
+
+void Gpio::pin_change(unsigned bank, uint8_t changed) {
+    if ((changed & byte(static_cast<uint16_t>(kPcmsk0 + bank))) != 0) {
+        byte(kPcifr) |= static_cast<uint8_t>(1 << bank);
+    }
+}
+
+void Gpio::pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t) {
+    const auto changed = static_cast<uint8_t>(before ^ after);
+    const auto index = &port - ports_.data();
+    if (index == kPortB) {
+        pin_change(0, changed);
+    } else if (index == kPortE) {
+        pin_change(1, changed & 1);
+        external_interrupts(4, before, after, 4);
+    } else if (index == kPortJ) {
+        pin_change(1, static_cast<uint8_t>(changed << 1));
+    } else if (index == kPortK) {
+        pin_change(2, changed);
+    } else if (index == kPortD) {
+        external_interrupts(0, before, after, 0);
+    } else {
+        return;
+    }
+    update_requests();
+}
+
+void Gpio::update_requests() {
+    const uint8_t flags = byte(kEifr), enabled = byte(kEimsk);
+    for (uint8_t i = 0; i < 8; i++) {
+        const Port& port = ports_[i < 4 ? kPortD : kPortE];
+        const bool low = sense(i) == 0 && (port.levels >> i & 1) == 0; // INT0..3 on PD0..3, INT4..7 on PE4..7
+        core_.cpu.request(kVectorInt0 + i, (enabled >> i & 1) != 0 && (low || (flags >> i & 1) != 0));
+    }
+    for (uint8_t bank = 0; bank < 3; bank++) {
+        const bool asks = (byte(kPcifr) & byte(kPcicr)) >> bank & 1;
+        core_.cpu.request(kVectorPinChange0 + bank, asks);
+    }
+}
+
+// Edges on an input become events only while an interrupt could come of them, or its flag be seen.
+void Gpio::update_watched(uint64_t cycle) {
+    for (Port& port : ports_) {
+        port.watched_in = 0;
+    }
+    ports_[kPortB].watched_in = byte(kPcmsk0);
+    ports_[kPortJ].watched_in = byte(kPcmsk0 + 1) >> 1;
+    ports_[kPortE].watched_in = (byte(kPcmsk0 + 1) & 1) | (byte(kEimsk) & 0xF0);
+    ports_[kPortK].watched_in = byte(kPcmsk0 + 2);
+    ports_[kPortD].watched_in = byte(kEimsk) & 0x0F;
+    for (Port& port : ports_) {
+        port.watched_in &= port.has_lines;
+        if (port.watched_in != 0) {
+            // What happened while nobody watched raises nothing now.
+            port.levels = compute_levels(port, cycle);
+        }
+    }
+    schedule_lines(cycle);
+}
+
+void Gpio::schedule_lines(uint64_t cycle) {
+    uint64_t soonest = kNever;
+    for (Port& port : ports_) {
+        for (unsigned bit = 0; port.watched_in >> bit != 0; bit++) {
+            if ((port.watched_in >> bit & 1) != 0) {
+                const Line::Edge* edge = port.lines[bit]->next_after(cycle);
+                soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
+            }
+        }
+    }
+    core_.schedule.set(Slot::Lines, soonest);
+}
+
+void Gpio::on_event(Slot, uint64_t cycle) {
+    for (Port& port : ports_) {
+        if (port.watched_in != 0) {
+            update(port, cycle);
+        }
+    }
+    schedule_lines(cycle);
+}
+
+} // namespace tilenca::avr

@@ -1,0 +1,103 @@
+// The eleven ports, their pins' levels, and the interrupts that pins raise.
+//
+// A pin that nobody drives reads high, with or without its pull-up: a defined stand-in for a floating input,
+// and what an idle serial line looks like.
+#pragma once
+
+#include "avr/line.h"
+#include "avr/peripheral.h"
+
+#include <array>
+#include <memory>
+
+namespace tilenca::avr {
+
+constexpr unsigned kPorts = 11; // A B C D E F G H J K L
+
+struct PinId {
+    uint8_t port;
+    uint8_t bit;
+};
+
+// Index of a port letter; there is no port I.
+constexpr uint8_t port_index(char letter) {
+    return static_cast<uint8_t>(letter < 'I' ? letter - 'A' : letter - 'B');
+}
+
+// Told of every change on the outputs it asked for. Changes can be announced ahead of time, and taken back by
+// a later call with an earlier cycle: from that cycle on, only the later call counts.
+struct EdgeListener {
+    virtual ~EdgeListener() = default;
+    virtual void edge(PinId pin, uint64_t cycle, bool level) = 0;
+};
+
+// Whoever takes a pin from its port: a timer's compare output.
+struct PinSource {
+    virtual ~PinSource() = default;
+    virtual bool pin_level(PinId pin, uint64_t cycle) = 0;
+};
+
+class Gpio : public Peripheral {
+  public:
+    explicit Gpio(const Core& core);
+
+    std::vector<uint16_t> registers() const override;
+    uint8_t read(uint16_t address, uint64_t cycle) override;
+    void write(uint16_t address, uint8_t value, uint64_t cycle) override;
+    void on_event(Slot slot, uint64_t cycle) override;
+    std::vector<uint8_t> vectors() const override;
+    void interrupt_taken(uint8_t vector) override;
+    void reset(uint64_t cycle) override;
+
+    // Connects an input to a wire whose edges are known ahead of time.
+    Line& attach_line(PinId pin);
+    Line* line(PinId pin) { return ports_[pin.port].lines[pin.bit].get(); }
+    // To be called after edges were pushed on a line.
+    void line_changed(PinId pin);
+    // Holds an input at a level from outside: a button, a resistor.
+    void hold_input(PinId pin, bool level, uint64_t cycle);
+
+    void listen(PinId pin, EdgeListener* listener);
+    // Announces a level on an output that a USART has taken over, now or later.
+    void announce(PinId pin, uint64_t cycle, bool level);
+    // A USART or timer takes a pin from its port, or gives it back (null). A USART's transmitter needs no
+    // source: nobody reads its pin back.
+    void take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycle);
+    void release(PinId pin, uint64_t cycle);
+
+    bool level(PinId pin, uint64_t cycle);
+    bool is_output(PinId pin) const;
+    bool port_bit(PinId pin) const;
+    // Counts every write that changed an output: cheap to compare, to know whether to look at the pins again.
+    uint64_t output_changes() const { return output_changes_; }
+
+  private:
+    struct Port {
+        uint16_t base = 0; // PIN; DDR and PORT follow
+        uint8_t levels = 0xFF;
+        uint8_t held = 0xFF;     // levels given from outside
+        uint8_t taken = 0;       // outputs that a peripheral drives
+        uint8_t watched_out = 0; // outputs with a listener
+        uint8_t watched_in = 0;  // inputs whose edges raise interrupts
+        uint8_t has_lines = 0;
+        std::array<PinSource*, 8> sources{};
+        std::array<EdgeListener*, 8> listeners{};
+        std::array<std::unique_ptr<Line>, 8> lines;
+    };
+
+    Port* port_of(uint16_t address, unsigned* which);
+    uint8_t compute_levels(Port& port, uint64_t cycle);
+    void update(Port& port, uint64_t cycle);
+    void pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t cycle);
+    void external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift);
+    void pin_change(unsigned bank, uint8_t changed);
+    void update_requests();
+    void update_watched(uint64_t cycle);
+    void schedule_lines(uint64_t cycle);
+    uint8_t sense(unsigned number) const;
+
+    std::array<Port, kPorts> ports_;
+    uint64_t output_changes_ = 0;
+};
+
+} // namespace tilenca::avr

@@ -1,0 +1,57 @@
+#include "avr/line.h"
+
+#include <algorithm>
+
+namespace tilenca::avr {
+
+void Line::push(uint64_t cycle, bool level) {
+    while (edges() != 0 && edges_.back().cycle >= cycle) {
+        edges_.pop_back();
+    }
+    const bool last = edges() == 0 ? before_ : edges_.back().level;
+    if (last != level) {
+        edges_.push_back({cycle, level});
+    }
+}
+
+bool Line::level_at(uint64_t cycle) const {
+    bool level = before_;
+    for (size_t i = first_; i < edges_.size() && edges_[i].cycle <= cycle; i++) {
+        level = edges_[i].level;
+    }
+    return level;
+}
+
+const Line::Edge* Line::next_after(uint64_t cycle) const {
+    for (size_t i = first_; i < edges_.size(); i++) {
+        if (edges_[i].cycle > cycle) {
+            return &edges_[i];
+        }
+    }
+    return nullptr;
+}
+
+const Line::Edge* Line::falling_from(uint64_t cycle) const {
+    for (size_t i = first_; i < edges_.size(); i++) {
+        if (edges_[i].cycle >= cycle && !edges_[i].level) {
+            return &edges_[i];
+        }
+    }
+    return nullptr;
+}
+
+void Line::forget_before(uint64_t cycle) {
+    while (edges() != 0 && edges_[first_].cycle < cycle) {
+        before_ = edges_[first_].level;
+        first_++;
+    }
+    if (first_ == edges_.size()) {
+        edges_.clear();
+        first_ = 0;
+    } else if (first_ >= 64) {
+        edges_.erase(edges_.begin(), edges_.begin() + static_cast<std::ptrdiff_t>(first_));
+        first_ = 0;
+    }
+}
+
+} // namespace tilenca::avr

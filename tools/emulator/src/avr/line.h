@@ -1,0 +1,39 @@
+// The level of one wire over time, as an input sees it: what was, and what is already on its way.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tilenca::avr {
+
+class Line {
+  public:
+    struct Edge {
+        uint64_t cycle;
+        bool level;
+    };
+
+    // From `cycle` on the wire has this level; whatever was to come at or after `cycle` does not happen.
+    void push(uint64_t cycle, bool level);
+
+    bool level_at(uint64_t cycle) const;
+
+    // The first edge after `cycle`, or null.
+    const Edge* next_after(uint64_t cycle) const;
+
+    // The first edge to low at or after `cycle`, or null.
+    const Edge* falling_from(uint64_t cycle) const;
+
+    // Drops the history before `cycle`.
+    void forget_before(uint64_t cycle);
+
+    size_t edges() const { return edges_.size() - first_; }
+
+  private:
+    std::vector<Edge> edges_; // alternating levels, rising times, from index first_ on
+    size_t first_ = 0;
+    bool before_ = true; // the level before the first edge; an idle line is high
+};
+
+} // namespace tilenca::avr

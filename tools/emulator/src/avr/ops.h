@@ -1,0 +1,77 @@
+// What all instruction handlers share: their signature, the way to the next one, flags, registers and memory.
+#pragma once
+
+#include "avr/cpu.h"
+
+namespace tilenca::avr::ops {
+
+#define TILENCA_STATE                                                                                        \
+    Cpu *cpu, const Instruction *at, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh
+#define TILENCA_OP(name) void name(TILENCA_STATE)
+// Ends a handler: goes on `words` further, `cycles` later. A macro, since it passes on the handler's six
+// arguments.
+#define TILENCA_NEXT(words, cycles) return next(cpu, at + (words), cycle + (cycles), carry, zero, nvh)
+
+// Stores the state and returns to Cpu::run.
+void leave(TILENCA_STATE);
+// Stops the core at this instruction with a reason.
+void stop(TILENCA_STATE, const char* reason);
+
+[[gnu::always_inline]] inline void next(TILENCA_STATE) {
+    if (__builtin_expect(cycle >= cpu->limit, 0)) {
+        return leave(cpu, at, cycle, carry, zero, nvh);
+    }
+    return at->run(cpu, at, cycle, carry, zero, nvh);
+}
+
+constexpr uint32_t kHalfCarryMask = 0xFF0000;
+
+// N from `result`, V from bit 7 of `overflow`, H from bit 4 of `half`; all three at most 8 bits wide.
+inline uint32_t pack(uint32_t result, uint32_t overflow, uint32_t half) {
+    return result | overflow << 8 | half << 16;
+}
+
+// A result that clears V and leaves H alone.
+inline uint32_t logic(uint32_t result, uint32_t nvh) {
+    return result | (nvh & kHalfCarryMask);
+}
+
+inline bool is_negative(uint32_t nvh) {
+    return nvh & 0x80;
+}
+inline bool is_overflow(uint32_t nvh) {
+    return nvh & 0x8000;
+}
+inline bool is_half(uint32_t nvh) {
+    return nvh & 0x100000;
+}
+inline bool is_signed_less(uint32_t nvh) {
+    return (nvh >> 7 ^ nvh >> 15 ^ nvh >> 31) & 1;
+}
+
+// Two bytes rather than one 16-bit load, which the compiler would make of it: the pair is often written byte
+// by byte just before, and the host would have to wait for both stores.
+inline uint16_t pair(const Cpu* cpu, unsigned reg) {
+    const volatile uint8_t* bytes = cpu->data + reg;
+    const unsigned low = bytes[0], high = bytes[1];
+    return static_cast<uint16_t>(low | high << 8);
+}
+
+inline void set_pair(Cpu* cpu, unsigned reg, uint32_t value) {
+    cpu->data[reg] = static_cast<uint8_t>(value);
+    cpu->data[reg + 1] = static_cast<uint8_t>(value >> 8);
+}
+
+constexpr unsigned kX = 26, kY = 28, kZ = 30;
+constexpr unsigned kRampZ = 0x5B, kEind = 0x5C, kStackPointer = 0x5D, kStatus = 0x5F;
+
+inline bool is_sram(uint16_t address) {
+    return static_cast<uint16_t>(address - kSramStart) < kSramBytes;
+}
+
+// Memory outside SRAM. They keep the state in `cpu` (SREG is part of memory) and add to cpu->stall_cycles.
+uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh);
+void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint32_t carry, uint32_t zero,
+                uint32_t nvh);
+
+} // namespace tilenca::avr::ops

@@ -1,0 +1,32 @@
+#include "avr/program.h"
+
+#include "avr/flow.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tilenca::avr {
+
+Program::Program()
+    : bytes_(kFlashBytes, 0xFF), decoded_(kFlashWords + 2, Instruction{ops::erased, 0, 0, 0, 0}) {
+    decoded_[kFlashWords].run = ops::beyond_flash;
+    decoded_[kFlashWords + 1].run = ops::beyond_flash;
+}
+
+uint16_t Program::word(uint32_t index) const {
+    index %= kFlashWords;
+    return static_cast<uint16_t>(bytes_[2 * index] | bytes_[2 * index + 1] << 8);
+}
+
+void Program::write(uint32_t byte_address, const uint8_t* bytes, uint32_t count) {
+    if (count == 0) {
+        return;
+    }
+    std::memcpy(bytes_.data() + byte_address, bytes, count);
+    const uint32_t first = byte_address / 2, last = (byte_address + count - 1) / 2;
+    for (uint32_t i = first == 0 ? 0 : first - 1; i <= last; i++) {
+        decoded_[i] = decode(word(i), word(i + 1), i);
+    }
+}
+
+} // namespace tilenca::avr

@@ -1,0 +1,299 @@
+#include "avr/timer.h"
+
+#include "avr/vectors.h"
+
+namespace tilenca::avr {
+
+namespace {
+
+struct Place {
+    uint16_t base, flags, mask;
+    uint8_t compare_vector;
+    PinId pins[3];
+};
+
+constexpr PinId pin(char port, uint8_t bit) {
+    return {port_index(port), bit};
+}
+
+constexpr Place kPlaces[6] = {
+    {0x44, 0x35, 0x6E, kVectorTimer0CompareA, {pin('B', 7), pin('G', 5), {}}},
+    {0x80, 0x36, 0x6F, kVectorTimer1Capture + 1, {pin('B', 5), pin('B', 6), pin('B', 7)}},
+    {0xB0, 0x37, 0x70, kVectorTimer2CompareA, {pin('B', 4), pin('H', 6), {}}},
+    {0x90, 0x38, 0x71, kVectorTimer3Capture + 1, {pin('E', 3), pin('E', 4), pin('E', 5)}},
+    {0xA0, 0x39, 0x72, kVectorTimer4Capture + 1, {pin('H', 3), pin('H', 4), pin('H', 5)}},
+    {0x120, 0x3A, 0x73, kVectorTimer5Capture + 1, {pin('L', 3), pin('L', 4), pin('L', 5)}},
+};
+
+constexpr uint32_t kDivisors[8] = {0, 1, 8, 64, 256, 1024, 0, 0};
+constexpr uint32_t kTimer2Divisors[8] = {0, 1, 8, 32, 64, 128, 256, 1024};
+
+constexpr WaveMode kNarrowModes[8] = {
+    {Wave::Normal, Top::Fixed, 0xFF}, {Wave::PhaseCorrect, Top::Fixed, 0xFF},
+    {Wave::Ctc, Top::CompareA, 0},    {Wave::Fast, Top::Fixed, 0xFF},
+    {Wave::Normal, Top::Fixed, 0xFF}, {Wave::PhaseCorrect, Top::CompareA, 0},
+    {Wave::Normal, Top::Fixed, 0xFF}, {Wave::Fast, Top::CompareA, 0},
+};
+
+constexpr WaveMode kWideModes[16] = {
+    {Wave::Normal, Top::Fixed, 0xFFFF},
+    {Wave::PhaseCorrect, Top::Fixed, 0xFF},
+    {Wave::PhaseCorrect, Top::Fixed, 0x1FF},
+    {Wave::PhaseCorrect, Top::Fixed, 0x3FF},
+    {Wave::Ctc, Top::CompareA, 0},
+    {Wave::Fast, Top::Fixed, 0xFF},
+    {Wave::Fast, Top::Fixed, 0x1FF},
+    {Wave::Fast, Top::Fixed, 0x3FF},
+    {Wave::PhaseAndFrequencyCorrect, Top::Capture, 0},
+    {Wave::PhaseAndFrequencyCorrect, Top::CompareA, 0},
+    {Wave::PhaseCorrect, Top::Capture, 0},
+    {Wave::PhaseCorrect, Top::CompareA, 0},
+    {Wave::Ctc, Top::Capture, 0},
+    {Wave::Normal, Top::Fixed, 0xFFFF},
+    {Wave::Fast, Top::Capture, 0},
+    {Wave::Fast, Top::CompareA, 0},
+};
+
+// Offsets of a wide timer's registers from TCCRnA: TCCRnC, then pairs of bytes from here on.
+constexpr unsigned kWideForce = 2, kWideCount = 4, kWideCapture = 6, kWideCompare = 8, kWideEnd = 14;
+constexpr unsigned kNarrowCount = 2, kNarrowCompare = 3, kNarrowEnd = 5;
+
+} // namespace
+
+Timer::Timer(const Core& core, Gpio& gpio, unsigned number)
+    : Peripheral(core), gpio_(gpio), number_(number), base_(kPlaces[number].base),
+      flag_register_(kPlaces[number].flags), mask_register_(kPlaces[number].mask),
+      first_vector_(kPlaces[number].compare_vector), slot_(Slot::Timer0 + number),
+      counter_(is_wide() ? 0xFFFF : 0xFF) {
+    for (unsigned i = 0; i < channels(); i++) {
+        pins_[i] = kPlaces[number].pins[i];
+    }
+}
+
+std::vector<uint16_t> Timer::registers() const {
+    std::vector<uint16_t> all = {flag_register_, mask_register_};
+    for (unsigned offset = 0; offset < (is_wide() ? kWideEnd : kNarrowEnd); offset++) {
+        if (!is_wide() || offset != 3) {
+            all.push_back(static_cast<uint16_t>(base_ + offset));
+        }
+    }
+    return all;
+}
+
+std::vector<uint8_t> Timer::vectors() const {
+    std::vector<uint8_t> all;
+    for (unsigned v = is_wide() ? first_vector_ - 1u : first_vector_; v <= first_vector_ + channels(); v++) {
+        all.push_back(static_cast<uint8_t>(v));
+    }
+    return all;
+}
+
+void Timer::sync(uint64_t cycle) {
+    if (divisor_ != 0 && cycle > synced_) {
+        if (const uint64_t ticks = tick_index(cycle) - tick_index(synced_); ticks != 0) {
+            counter_.advance(ticks);
+        }
+    }
+    synced_ = cycle > synced_ ? cycle : synced_;
+}
+
+uint8_t Timer::read(uint16_t address, uint64_t cycle) {
+    sync(cycle);
+    if (address == flag_register_) {
+        return counter_.flags;
+    }
+    const unsigned first_value = is_wide() ? kWideCount : kNarrowCount;
+    if (address == mask_register_ || address < base_ + first_value) {
+        return byte(address);
+    }
+    return read_value(address - base_);
+}
+
+uint8_t Timer::read_value(unsigned offset) {
+    if (!is_wide()) {
+        return static_cast<uint8_t>(offset == kNarrowCount ? counter_.count()
+                                                           : counter_.compare(offset - kNarrowCompare));
+    }
+    const bool high = (offset & 1) != 0;
+    if (offset >= kWideCompare) { // compare registers are read byte by byte, without the shared temporary
+        const uint16_t value = counter_.compare((offset - kWideCompare) / 2);
+        return static_cast<uint8_t>(high ? value >> 8 : value);
+    }
+    if (high) {
+        return temp_;
+    }
+    const uint16_t value = offset == kWideCount ? counter_.count() : counter_.capture();
+    temp_ = static_cast<uint8_t>(value >> 8);
+    return static_cast<uint8_t>(value);
+}
+
+void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
+    sync(cycle);
+    const unsigned first_value = is_wide() ? kWideCount : kNarrowCount;
+    if (address == flag_register_) {
+        counter_.flags &= static_cast<uint8_t>(~value);
+    } else if (address == mask_register_) {
+        byte(address) = value;
+    } else if (address < base_ + first_value) {
+        write_control(address, value, cycle);
+    } else {
+        write_value(address - base_, value);
+    }
+    update_requests();
+    reschedule();
+}
+
+void Timer::write_value(unsigned offset, uint8_t value) {
+    if (is_wide()) {
+        if ((offset & 1) != 0) {
+            temp_ = value;
+        } else {
+            write_wide(offset, static_cast<uint16_t>(temp_ << 8 | value));
+        }
+    } else if (offset == kNarrowCount) {
+        counter_.set_count(value);
+    } else {
+        counter_.set_compare(offset - kNarrowCompare, value);
+    }
+}
+
+void Timer::write_wide(unsigned offset, uint16_t value) {
+    if (offset == kWideCount) {
+        counter_.set_count(value);
+    } else if (offset == kWideCapture) {
+        counter_.set_capture(value);
+    } else {
+        counter_.set_compare((offset - kWideCompare) / 2, value);
+    }
+}
+
+void Timer::write_control(uint16_t address, uint8_t value, uint64_t cycle) {
+    const unsigned force_at = is_wide() ? kWideForce : 1;
+    if (address == base_ + force_at) {
+        for (unsigned i = 0; i < channels(); i++) {
+            if ((value & 0x80 >> i) != 0 && counter_.mode().wave < Wave::Fast) {
+                counter_.force_compare(i);
+            }
+        }
+        value &= is_wide() ? 0x00 : 0x3F; // the force bits read as zero
+    }
+    byte(address) = value;
+    apply_mode();
+    apply_outputs(cycle);
+    if (address == control_b()) {
+        apply_clock(cycle);
+    }
+}
+
+void Timer::apply_mode() {
+    const uint8_t low = byte(control_a()) & 3;
+    counter_.set_mode(is_wide() ? kWideModes[low | (byte(control_b()) >> 1 & 12)]
+                                : kNarrowModes[low | (byte(control_b()) >> 1 & 4)]);
+}
+
+// A channel whose COM bits ask for it takes its pin; "toggle" needs a mode whose top is a register.
+void Timer::apply_outputs(uint64_t cycle) {
+    const WaveMode& mode = counter_.mode();
+    for (unsigned i = 0; i < channels(); i++) {
+        uint8_t action = byte(control_a()) >> (6 - 2 * i) & 3;
+        const bool can_toggle = mode.wave < Wave::Fast || (i == 0 && mode.top != Top::Fixed);
+        action = action == 1 && !can_toggle ? 0 : action;
+        counter_.set_output(i, action);
+        if ((action != 0) != driving_[i]) {
+            driving_[i] = action != 0;
+            if (driving_[i]) {
+                gpio_.take_over(pins_[i], this, true, cycle);
+            } else {
+                gpio_.release(pins_[i], cycle);
+            }
+        }
+    }
+}
+
+void Timer::apply_clock(uint64_t) {
+    const uint8_t select = byte(control_b()) & 7;
+    divisor_ = number_ == 2 ? kTimer2Divisors[select] : kDivisors[select];
+    if (number_ != 2 && select >= 6) {
+        core_.warnings.once("timer " + std::to_string(number_) + " clocked from its T pin: stands still");
+    }
+}
+
+void Timer::restart_prescaler(uint64_t cycle) {
+    sync(cycle);
+    origin_ = cycle;
+    reschedule();
+}
+
+bool Timer::pin_level(PinId pin, uint64_t cycle) {
+    sync(cycle);
+    for (unsigned i = 0; i < channels(); i++) {
+        if (pins_[i].port == pin.port && pins_[i].bit == pin.bit) {
+            return counter_.level(i);
+        }
+    }
+    return false;
+}
+
+double Timer::duty(PinId pin, uint64_t cycle) {
+    sync(cycle);
+    for (unsigned i = 0; i < channels(); i++) {
+        if (driving_[i] && pins_[i].port == pin.port && pins_[i].bit == pin.bit) {
+            return counter_.duty(i);
+        }
+    }
+    return -1;
+}
+
+// --- interrupts
+// -----------------------------------------------------------------------------------------------
+
+uint8_t Timer::vector_of(uint8_t flag) const {
+    if (flag == kFlagOverflow) {
+        return static_cast<uint8_t>(first_vector_ + channels());
+    }
+    return static_cast<uint8_t>(flag == kFlagCapture ? first_vector_ - 1
+                                                     : first_vector_ + __builtin_ctz(flag) - 1);
+}
+
+void Timer::update_requests() {
+    const uint8_t asking = counter_.flags & byte(mask_register_);
+    for (const uint8_t flag : {0x01, 0x02, 0x04, 0x08, 0x20}) {
+        if (is_wide() || flag <= 0x04) {
+            core_.cpu.request(vector_of(flag), (asking & flag) != 0);
+        }
+    }
+}
+
+void Timer::reschedule() {
+    const auto wanted = static_cast<uint8_t>(byte(mask_register_) & ~counter_.flags);
+    const uint64_t ticks = divisor_ == 0 || wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
+    core_.schedule.set(slot_, ticks == 0 ? kNever : (tick_index(synced_) + ticks) * divisor_ + origin_);
+}
+
+void Timer::on_event(Slot, uint64_t cycle) {
+    sync(cycle);
+    update_requests();
+    reschedule();
+}
+
+void Timer::interrupt_taken(uint8_t vector) {
+    for (const uint8_t flag : {0x01, 0x02, 0x04, 0x08, 0x20}) {
+        if ((is_wide() || flag <= 0x04) && vector_of(flag) == vector) {
+            counter_.flags &= static_cast<uint8_t>(~flag);
+        }
+    }
+    update_requests();
+    reschedule();
+}
+
+void Timer::reset(uint64_t cycle) {
+    counter_.reset();
+    counter_.set_mode(is_wide() ? kWideModes[0] : kNarrowModes[0]);
+    driving_.fill(false);
+    temp_ = 0;
+    divisor_ = 0;
+    origin_ = synced_ = cycle;
+    core_.schedule.cancel(slot_);
+}
+
+} // namespace tilenca::avr

@@ -1,0 +1,62 @@
+// One of the six timers: its registers, its clock, its interrupts and its pins around a Counter.
+//
+// The counter is brought up to date only when somebody looks, or when an enabled interrupt falls due.
+#pragma once
+
+#include "avr/counter.h"
+#include "avr/gpio.h"
+
+namespace tilenca::avr {
+
+class Timer : public Peripheral, public PinSource {
+  public:
+    Timer(const Core& core, Gpio& gpio, unsigned number);
+
+    std::vector<uint16_t> registers() const override;
+    uint8_t read(uint16_t address, uint64_t cycle) override;
+    void write(uint16_t address, uint8_t value, uint64_t cycle) override;
+    void on_event(Slot slot, uint64_t cycle) override;
+    std::vector<uint8_t> vectors() const override;
+    void interrupt_taken(uint8_t vector) override;
+    void reset(uint64_t cycle) override;
+    bool pin_level(PinId pin, uint64_t cycle) override;
+
+    // Share of time a pin is high, if this timer drives it; otherwise -1.
+    double duty(PinId pin, uint64_t cycle);
+    // The prescaler starts again from zero.
+    void restart_prescaler(uint64_t cycle);
+    bool has_own_prescaler() const { return number_ == 2; }
+
+  private:
+    bool is_wide() const { return number_ == 1 || number_ >= 3; }
+    unsigned channels() const { return is_wide() ? 3 : 2; }
+    uint16_t control_a() const { return base_; }
+    uint16_t control_b() const { return static_cast<uint16_t>(base_ + 1); }
+    void sync(uint64_t cycle);
+    uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) / divisor_; }
+    void write_control(uint16_t address, uint8_t value, uint64_t cycle);
+    void write_value(unsigned offset, uint8_t value);
+    uint8_t read_value(unsigned offset);
+    void write_wide(unsigned offset, uint16_t value);
+    void apply_mode();
+    void apply_outputs(uint64_t cycle);
+    void apply_clock(uint64_t cycle);
+    uint8_t vector_of(uint8_t flag) const;
+    void update_requests();
+    void reschedule();
+
+    Gpio& gpio_;
+    unsigned number_;
+    uint16_t base_, flag_register_, mask_register_;
+    uint8_t first_vector_; // of compare A
+    Slot slot_;
+    Counter counter_;
+    std::array<PinId, 3> pins_{};
+    std::array<bool, 3> driving_{};
+    uint8_t temp_ = 0;     // the byte a 16-bit access leaves for its second half
+    uint32_t divisor_ = 0; // 0: the clock is stopped
+    uint64_t origin_ = 0;  // cycle the prescaler counts from
+    uint64_t synced_ = 0;
+};
+
+} // namespace tilenca::avr

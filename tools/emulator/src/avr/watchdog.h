@@ -1,0 +1,34 @@
+// The watchdog: its own 128 kHz clock, timed changes, interrupt and reset.
+#pragma once
+
+#include "avr/peripheral.h"
+
+namespace tilenca::avr {
+
+class Watchdog : public Peripheral {
+  public:
+    explicit Watchdog(const Core& core) : Peripheral(core) {}
+
+    std::vector<uint16_t> registers() const override;
+    void write(uint16_t address, uint8_t value, uint64_t cycle) override;
+    void on_event(Slot slot, uint64_t cycle) override;
+    std::vector<uint8_t> vectors() const override;
+    void interrupt_taken(uint8_t vector) override;
+    void reset(uint64_t cycle) override;
+
+    // WDR: counts from zero again.
+    void restart(uint64_t cycle);
+    // Set once its time ran out with reset enabled; the chip then resets.
+    bool wants_reset() const { return wants_reset_; }
+    // After a watchdog reset it stays on, at its shortest time, until WDRF is cleared.
+    void force_on(uint64_t cycle);
+
+  private:
+    bool is_on() const;
+    void update_requests();
+
+    uint64_t changeable_until_ = 0;
+    bool wants_reset_ = false;
+};
+
+} // namespace tilenca::avr

@@ -1,0 +1,36 @@
+#include "image/image.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace tilenca {
+
+std::string Image::function_at(uint32_t byte_address) const {
+    const Symbol* best = nullptr;
+    for (const Symbol& symbol : symbols) {
+        if (symbol.address <= byte_address && byte_address < symbol.address + symbol.size &&
+            (best == nullptr || symbol.address > best->address)) {
+            best = &symbol;
+        }
+    }
+    return best == nullptr ? "" : best->name;
+}
+
+Image load_image(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw ImageError(path + ": " + std::strerror(errno) + "; build the firmware first");
+    }
+    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (bytes.empty()) {
+        throw ImageError(path + ": cannot be read, or empty; give the ELF or Intel HEX file of a build");
+    }
+    if (bytes[0] == ':') {
+        return load_hex(path, std::string(bytes.begin(), bytes.end()));
+    }
+    return load_elf(path, bytes);
+}
+
+} // namespace tilenca
