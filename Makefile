@@ -1,0 +1,81 @@
+# The commands a person types. Each sets up what it needs first and skips what is there; `make` alone lists them.
+
+PIO     := .venv/bin/pio
+PYTHON  := .venv/bin/python
+TILENCA := .venv/bin/tilenca
+ENV     := megaatmega2560
+ELF     := .pio/build/$(ENV)/firmware.elf
+
+# C++ that is written by hand; what `tilenca export` generates has its own check.
+CPP := $(wildcard firmware/include/[abc]*/*.h firmware/src/*.cpp firmware/src/[abc]*/*.cpp \
+	test/firmware/*.h test/firmware/*/*.cpp test/firmware/*/*.h \
+	test/emulator/*.cpp test/emulator/*.h \
+	tools/emulator/*.cpp tools/emulator/*.h tools/emulator/*/*.cpp tools/emulator/*/*.h tools/simulator/*.cpp)
+
+# Buffers are left uninitialised on purpose; the other suppression is for a false alarm on nested `?:`.
+CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \
+	--enable=warning,performance,portability --suppress=uninitMemberVar --suppress=compareBoolExpressionWithInt
+
+# A core directory of the user's own would hide the one of the set-up.
+unexport PLATFORMIO_CORE_DIR
+
+.NOTPARALLEL:
+.DEFAULT_GOAL := help
+.PHONY: help setup setup-demo setup-train setup-test setup-check demo test check static format-check lint types budgets \
+	format train bench clean
+
+help: ## list these targets
+	@echo "make TARGET, where TARGET is one of"
+	@sed -n 's/^\([a-z-]*\):[^#]*## /  \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup: setup-demo ## make this clone ready: system packages, .venv, C++ libraries, PlatformIO
+
+setup-demo setup-train setup-test setup-check:
+	@sh tools/setup/setup.sh $(@:setup-%=%)
+
+demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
+	@$(PIO) run -e $(ENV)
+	@$(TILENCA) emulate --shape all
+	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch"
+
+test: setup-test ## run every test: the firmware's core on this machine, then host and emulator
+	@$(PIO) run -s -e $(ENV)
+	@$(PIO) test -e native
+	@$(PYTHON) -m pytest
+
+check: static test ## what to run before every commit: format, lint, types, budgets, tests
+
+static: format-check lint types budgets ## everything of `make check` but the tests
+
+format-check: setup-check
+	@.venv/bin/ruff format --check
+	@.venv/bin/clang-format --dry-run -Werror $(CPP)
+
+lint: setup-check
+	@.venv/bin/ruff check
+	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
+	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator
+	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV)
+
+types: setup-check
+	@.venv/bin/mypy
+
+budgets: setup-check ## compare flash, SRAM and stack of the firmware with tools/budgets.toml
+	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) export --check
+	@$(PYTHON) tools/budgets.py $(ELF)
+
+format: setup-check ## format all Python and C++
+	@.venv/bin/ruff format
+	@.venv/bin/clang-format -i $(CPP)
+
+train: setup-train ## train a model of the digits into build/models/digits
+	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
+
+bench: setup-demo ## print exact sizes of the firmware and the speed of the emulation
+	@$(PIO) run -s -e $(ENV)
+	@$(PYTHON) tools/bench.py $(ELF)
+
+clean: ## remove what was built; .venv and PlatformIO's packages stay
+	@rm -rf .pio build/emulator build/simulator build/models
+	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -1,0 +1,86 @@
+"""The README's commands are true: each is known here, and what can run on a test machine runs."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tilenca import paths
+
+README = (paths.ROOT / "README.md").read_text(encoding="utf-8")
+
+# How each command of the README is tried: extra arguments that make it short, and the exit status expected.
+# Without tiles on USB the fleet commands must say so with 3. `make` targets are asked what they would do.
+TRIED: dict[str, tuple[list[str], int]] = {
+    "make demo": (["--dry-run"], 0),
+    "make test": (["--dry-run"], 0),
+    "tilenca emulate --shape 4 --watch": (["--updates", "30"], 0),
+    "tilenca train --shapes my-shapes.toml --out models/mine": (["--recipe", "smoke"], 0),
+    "tilenca evaluate --model models/mine --shapes my-shapes.toml": (["--runs", "2", "--steps", "5"], 0),
+    "tilenca export --model models/mine": (["--out", "firmware-mine"], 0),
+    "tilenca devices": (["--port", "none-*"], 3),
+    "python host/flash_all.py": (["--no-build", "--port", "none-*"], 3),
+    "python host/monitor.py": (["--port", "none-*"], 3),
+}
+# Tried elsewhere (serving and monitoring in test_monitor.py, `pio run` by the set-up) or only a change of environment.
+ELSEWHERE = {
+    ". .venv/bin/activate",
+    "pio run",
+    "tilenca emulate --shapes my-shapes.toml",
+    "tilenca emulate --shape 4 --serve tiles --seconds 20 &",
+    "tilenca monitor --port 'tiles/*' --seconds 10",
+}
+
+
+def commands() -> list[str]:
+    blocks = re.findall(r"^```sh\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
+    return [line for block in blocks for line in block.splitlines() if line]
+
+
+def test_every_command_of_the_readme_is_known() -> None:
+    assert set(commands()) == set(TRIED) | ELSEWHERE
+
+
+@pytest.fixture(scope="module")
+def reader(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory as the reader's: with the README's own shape file in it."""
+    directory = tmp_path_factory.mktemp("reader")
+    (drawing,) = re.findall(r"^```toml\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
+    (directory / "my-shapes.toml").write_text(drawing, encoding="utf-8")
+    (directory / "host").symlink_to(paths.ROOT / "host")
+    (directory / "Makefile").symlink_to(paths.ROOT / "Makefile")
+    return directory
+
+
+def test_the_commands_run_as_written_in_their_order(reader: Path) -> None:
+    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    for command in commands():
+        if command not in TRIED:
+            continue
+        more, status = TRIED[command]
+        done = subprocess.run(
+            [*shlex.split(command), *more],
+            cwd=reader,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert done.returncode == status, f"{command}: {done.stderr}"
+        assert "Traceback" not in done.stderr
+
+
+def test_links_lead_somewhere() -> None:
+    for document in [
+        paths.ROOT / "README.md",
+        paths.ROOT / "CONTRIBUTING.md",
+        *(paths.ROOT / "docs").glob("*.md"),
+    ]:
+        for target in re.findall(r"\]\((?!https?:)([^)#]+)", document.read_text(encoding="utf-8")):
+            assert (document.parent / target).exists(), f"{document.name} links to {target}"

@@ -1,0 +1,142 @@
+"""The set-up notices what is done and what is not, and says what to do where it cannot help itself."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from setup import python
+from setup.command import ROOT, SetupError, Stamp, digest, run
+
+APT = ROOT / "tools" / "setup" / "apt.sh"
+
+
+def test_a_stamp_holds_for_its_own_content_only(tmp_path: Path) -> None:
+    path = tmp_path / "made" / ".stamp"
+    assert not Stamp(path, digest(["one"])).is_current()
+    Stamp(path, digest(["one"])).set()
+    assert Stamp(path, digest(["one"])).is_current()
+    assert not Stamp(path, digest(["two"])).is_current()
+    Stamp(path, digest(["one"])).clear()
+    assert not Stamp(path, digest(["one"])).is_current()
+
+
+def test_a_damaged_stamp_means_not_done(tmp_path: Path) -> None:
+    path = tmp_path / ".stamp"
+    path.write_bytes(b"\xff\xfe\x00")
+    assert not Stamp(path, digest([])).is_current()
+
+
+def test_parts_that_only_meet_elsewhere_differ() -> None:
+    assert digest(["ab", "c"]) != digest(["a", "bc"])
+    assert digest(["ab"]) == digest([b"ab"])
+
+
+def test_a_failed_command_names_the_remedy_and_reads_no_input() -> None:
+    with pytest.raises(SetupError, match=r"^do this instead \(exit status 3\)$"):
+        run([sys.executable, "-c", "import sys; sys.exit(len(sys.stdin.read()) + 3)"], "do this instead")
+    with pytest.raises(SetupError, match="do that instead"):
+        run(["/no/such/program"], "do that instead")
+
+
+def test_every_requirement_is_pinned() -> None:
+    project = tomllib.loads(python.PYPROJECT.read_text(encoding="utf-8"))["project"]
+    extras = [project["optional-dependencies"][extra] for extra in python.EXTRAS.values()]
+    for requirement in [*project["dependencies"], *(item for extra in extras for item in extra)]:
+        name = re.split(r"[<>=]", requirement)[0]
+        assert re.fullmatch(r"[\d.]+", _pin(name)), requirement
+
+
+def _pin(name: str) -> str:
+    pins = [
+        line.split("==")
+        for line in python.CONSTRAINTS.read_text(encoding="utf-8").splitlines()
+        if "==" in line
+    ]
+    return {pinned.lower(): version for pinned, version in pins}[name.lower()]
+
+
+def test_an_unpinned_package_is_an_error() -> None:
+    with pytest.raises(SetupError, match=r"constraints\.txt does not pin nosuch"):
+        python.pinned_version("nosuch")
+
+
+def test_the_installed_version_is_the_one_python_would_import(tmp_path: Path) -> None:
+    assert python.installed_version("platformio", Path(sys.prefix)) == python.pinned_version("platformio")
+    assert python.installed_version("platformio", tmp_path) is None
+
+
+def make_environment_at(venv: Path, first_line: str) -> Path:
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "python").symlink_to(sys.executable)
+    (venv / "bin" / "pip").write_text(first_line + "\n", encoding="utf-8")
+    return venv
+
+
+def test_an_environment_that_was_moved_is_not_used(tmp_path: Path) -> None:
+    here = tmp_path / "here"
+    assert python.belongs_here(make_environment_at(here, f"#!{here}/bin/python"))
+    assert not python.belongs_here(make_environment_at(tmp_path / "moved", f"#!{here}/bin/python"))
+
+
+def test_an_environment_without_its_interpreter_is_not_used(tmp_path: Path) -> None:
+    venv = make_environment_at(tmp_path / "venv", f"#!{tmp_path}/venv/bin/python")
+    (venv / "bin" / "python").unlink()
+    (venv / "bin" / "python").symlink_to(tmp_path / "gone")
+    assert not python.belongs_here(venv)
+    assert not python.belongs_here(tmp_path / "never")
+
+
+def run_apt(tmp_path: Path, package: str, **programs: str) -> subprocess.CompletedProcess[str]:
+    """Runs apt.sh on a machine whose programs are the real ones but for those given as shell scripts."""
+    for name, body in programs.items():
+        script = tmp_path / name.replace("_", "-")
+        script.write_text(f"#!/bin/sh\n{body}\n", encoding="utf-8")
+        script.chmod(0o755)
+    environment = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    command = ["sh", str(APT), package]
+    # In a directory of its own, where its log goes.
+    return subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+def test_without_root_or_sudo_the_user_is_told_what_to_type(tmp_path: Path) -> None:
+    done = run_apt(tmp_path, "no-such-package", id="echo 1000", sudo="exit 1")
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert "sudo apt-get update && sudo apt-get install -y no-such-package" in done.stderr
+
+
+def test_sudo_is_never_given_the_chance_to_ask(tmp_path: Path) -> None:
+    done = run_apt(
+        tmp_path, "no-such-package", id="echo 1000", sudo='[ "$1" = -n ] && printf "%s\\n" "$*" >>sudo.log'
+    )
+    assert done.returncode == 0
+    calls = (tmp_path / "sudo.log").read_text(encoding="utf-8").splitlines()
+    assert [call.split()[0] for call in calls] == ["-n"] * 3
+    assert calls[-1].endswith("install --no-install-recommends no-such-package")
+
+
+def test_a_failed_installation_shows_what_apt_said(tmp_path: Path) -> None:
+    done = run_apt(tmp_path, "no-such-package", id="echo 0", apt_get='echo "E: locate $*"; exit 100')
+    assert done.returncode == 1
+    assert "E: locate" in done.stderr
+    assert "build/setup/apt.log" in done.stderr
+
+
+def test_installed_packages_need_nobody(tmp_path: Path) -> None:
+    done = run_apt(tmp_path, "dpkg", id="echo 1000", sudo="exit 1")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_make_alone_lists_the_targets() -> None:
+    done = subprocess.run(
+        ["make", "--no-print-directory"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    listed = {line.split()[0] for line in done.stdout.splitlines()[1:]}
+    assert {"setup", "demo", "test", "check", "train", "bench", "format", "clean", "help"} <= listed

@@ -1,0 +1,49 @@
+"""The set-up after the system's own part (setup.sh): Python packages, C++ libraries, PlatformIO.
+
+Run by `make setup`; each step looks first whether it is already done.
+"""
+
+import argparse
+import sys
+
+from offline.seed import DEBIAN_PACKAGES
+from setup import native, pio, python
+from setup.command import SetupError
+
+LEVELS = {
+    "demo": "build the firmware and run it on emulated tiles",
+    "train": "the same, and train models",
+    "test": "the same, and run the tests",
+    "check": "the same, and check format, lint, types and budgets",
+}
+# Debian packages beyond those of setup.sh. The tests seed PlatformIO for real, needed here or not.
+SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "libsimavr-dev"]}
+
+
+def main() -> int:
+    """Brings the clone up to the level asked for; returns the exit status."""
+    levels = list(LEVELS)
+    parser = argparse.ArgumentParser(
+        prog="setup",
+        description="Makes this clone ready to use.",
+        epilog="Levels: " + "; ".join(f"{name}: {purpose}" for name, purpose in LEVELS.items()) + ".",
+    )
+    parser.add_argument("level", nargs="?", choices=levels, default="demo")
+    level = parser.parse_args().level
+    reached = levels[: levels.index(level) + 1]
+    try:
+        native.install_system_packages([name for step in reached for name in SYSTEM_PACKAGES.get(step, [])])
+        python.make_environment(reached)
+        native.build_libraries()
+        pio.make_ready()
+    except SetupError as error:
+        print(f"setup: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("setup: interrupted; run it again to go on", file=sys.stderr)
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,44 @@
+"""What is compiled or installed outside Python: system packages and the two C++ libraries."""
+
+import os
+import subprocess
+from collections.abc import Sequence
+
+from setup.command import ROOT, run, say
+
+LIBRARIES = {
+    "tools/emulator": "build/emulator/libtilenca_emulator.so",
+    "tools/simulator": "build/simulator/libtilenca_core.so",
+}
+
+
+def install_system_packages(packages: Sequence[str]) -> None:
+    """Installs those of the packages that are missing, by apt.
+
+    Raises:
+        SystemExit: they cannot be installed; apt.sh has told the user why and what to do.
+    """
+    if not packages:
+        return
+    done = subprocess.run(
+        ["sh", "tools/setup/apt.sh", *packages], cwd=ROOT, stdin=subprocess.DEVNULL, check=False
+    )
+    if done.returncode:
+        raise SystemExit(done.returncode)
+
+
+def build_libraries() -> None:
+    """Compiles the emulator and the firmware's core for this machine; make knows what is up to date.
+
+    Raises:
+        SetupError: a compilation failed.
+    """
+    # The makes run on their own: flags and the job server of a make that called us are not meant for them.
+    env = {
+        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+    }
+    jobs = f"-j{os.cpu_count() or 1}"
+    for folder, library in LIBRARIES.items():
+        if not (ROOT / library).exists():
+            say(f"compiling {folder}")
+        run(["make", "--silent", jobs, "-C", folder], f"{folder} does not compile, see above", env=env)

@@ -1,0 +1,103 @@
+"""The virtual environment `.venv` and the Python packages in it."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+from setup.command import ROOT, SetupError, Stamp, digest, run, say
+
+VENV = ROOT / ".venv"
+PYTHON = VENV / "bin" / "python"
+CONSTRAINTS = ROOT / "constraints.txt"
+PYPROJECT = ROOT / "pyproject.toml"
+
+# What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
+EXTRAS = {"demo": "firmware", "train": "train", "test": "test", "check": "check"}
+
+
+def pinned_version(package: str) -> str:
+    """The version of a package in constraints.txt.
+
+    Raises:
+        SetupError: the file does not pin it.
+    """
+    found = re.search(
+        rf"^{re.escape(package)}==(\S+)$", CONSTRAINTS.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    if not found:
+        raise SetupError(f"constraints.txt does not pin {package}: add a line {package}==VERSION")
+    return found.group(1)
+
+
+def installed_version(package: str, venv: Path = VENV) -> str | None:
+    """The version of a package in the virtual environment, by the name of its folder; None: not there."""
+    for info in venv.glob(f"lib/python3*/site-packages/{package}-*.dist-info"):
+        return info.name.removesuffix(".dist-info").removeprefix(f"{package}-")
+    return None
+
+
+def make_environment(levels: Sequence[str]) -> None:
+    """Creates `.venv` if needed and installs what the levels need, the project itself included.
+
+    Raises:
+        SetupError: an installation failed.
+    """
+    _make_venv()
+    project = tomllib.loads(PYPROJECT.read_text(encoding="utf-8"))
+    for level in levels:
+        _install_level(level, project["project"])
+    _install_project()
+
+
+def _make_venv() -> None:
+    if belongs_here(VENV):
+        return
+    say(f"making the virtual environment .venv (Python {sys.version.split()[0]})")
+    interpreter = getattr(sys, "_base_executable", sys.executable)
+    run([interpreter, "-m", "venv", "--clear", VENV], "cannot make .venv. Is the disk full or not writable?")
+
+
+def belongs_here(venv: Path) -> bool:
+    """Whether the environment works and was made at this place: its programs hold their own full path."""
+    try:
+        first_line = (venv / "bin" / "pip").read_text(encoding="utf-8").splitlines()[0]
+        works = subprocess.run([venv / "bin" / "python", "-c", ""], stdin=subprocess.DEVNULL, check=False)
+    except (OSError, UnicodeDecodeError, IndexError):
+        return False
+    return works.returncode == 0 and str(venv) in first_line
+
+
+def _install_level(level: str, project: dict[str, dict[str, list[str]]]) -> None:
+    wanted = list(project["optional-dependencies"][EXTRAS[level]])
+    if level == "demo":
+        wanted += [*project["dependencies"], f"setuptools=={pinned_version('setuptools')}"]
+    stamp = Stamp(VENV / f".tilenca-{level}", digest([*wanted, CONSTRAINTS.read_bytes()]))
+    pin_holds = level != "demo" or installed_version("platformio") == pinned_version("platformio")
+    if stamp.is_current() and pin_holds:
+        return
+    names = ", ".join(re.split(r"[<>=\[]", requirement)[0] for requirement in wanted)
+    say(f"installing Python packages: {names}")
+    stamp.clear()
+    _pip("install", "--constraint", CONSTRAINTS, *wanted)
+    stamp.set()
+
+
+def _install_project() -> None:
+    stamp = Stamp(VENV / ".tilenca-project", digest([PYPROJECT.read_bytes()]))
+    if stamp.is_current() and (VENV / "bin" / "tilenca").exists():
+        return
+    say("installing tilenca itself")
+    stamp.clear()
+    _pip("install", "--no-deps", "--no-build-isolation", "--editable", ROOT)
+    stamp.set()
+
+
+def _pip(*arguments: str | Path) -> None:
+    quiet = ["-qq", "--disable-pip-version-check", "--no-input"]  # errors only
+    run(
+        [PYTHON, "-m", "pip", *quiet, *arguments],
+        "pip failed, see above. The network is needed this once; run the same again to go on",
+    )
