@@ -33,7 +33,8 @@ Sentence sentence;
 Button button;
 
 void say_sentence() {
-    board::usart_write(board::kHostUsart, reinterpret_cast<const uint8_t*>(sentence.bytes()), sentence.size());
+    board::usart_write(board::kHostUsart, reinterpret_cast<const uint8_t*>(sentence.bytes()),
+                       sentence.size());
 }
 
 void read_sides(uint32_t now_ms) {
@@ -86,6 +87,7 @@ void report(uint32_t now_ms) {
 } // namespace
 
 void setup() {
+    board::clock_begin();
     board::links_begin();
     board::face_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);

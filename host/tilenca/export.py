@@ -83,8 +83,8 @@ def check_fits(model: Model) -> None:
     size = model.dimensions
     if size.channels > MAX_CHANNELS or max(size.hidden1, size.hidden2) > MAX_WIDTH:
         raise BuildError(
-            f"model {model.model_id:04X}: {size.channels} channels and hidden layers of {size.hidden1} and "
-            f"{size.hidden2}; the firmware has room for {MAX_CHANNELS} and {MAX_WIDTH}, train a narrower one"
+            f"the model has {size.channels} channels and hidden layers of {size.hidden1} and {size.hidden2}; "
+            f"the firmware has room for {MAX_CHANNELS} and {MAX_WIDTH}, train a narrower one"
         )
     if flash_bytes(model) > MAX_FLASH_BYTES:
         raise BuildError(

@@ -9,8 +9,8 @@ class Button {
   public:
     static constexpr uint8_t kSettleMs = 20;
 
-    // Takes the contact as it is now. True once per press, when it has been closed for kSettleMs; it must have
-    // been open as long before it counts again.
+    // Takes the contact as it is now. True once per press, when it has been closed for kSettleMs; it must
+    // have been open as long before it counts again.
     bool pressed(bool closed, uint32_t now_ms) {
         if (closed == settled_) {
             changed_ms_ = now_ms;

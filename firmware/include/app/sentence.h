@@ -34,7 +34,7 @@ class Sentence {
 
     uint8_t size_ = 0;
     uint8_t checksum_ = 0;
-    char bytes_[kMaxSentence];
+    char bytes_[kMaxSentence] = {};
 };
 
 } // namespace tilenca

@@ -18,8 +18,8 @@ class Tile {
   public:
     static constexpr uint8_t kNothing = 0xFF;
 
-    // Boots: the cell is the seed, says so on all sides, and updates first one period from now. The model must
-    // outlive the tile.
+    // Boots: the cell is the seed, says so on all sides, and updates first one period from now. The model
+    // must outlive the tile.
     Tile(const Model& model, const Settings& settings, uint32_t now_ms);
 
     // Starts the classification anew from the seed. The links and the phase of the updates stay.
@@ -28,8 +28,8 @@ class Tile {
     // Takes the next byte from the line on this side.
     void receive(Side side, uint8_t byte, uint32_t now_ms);
 
-    // Does at most one slice of work, about a millisecond on the chip. True when this ended a period: the tile
-    // has new frames for its neighbours, after an update or, once stopped, without one.
+    // Does at most one slice of work, about a millisecond on the chip. True when this ended a period: the
+    // tile has new frames for its neighbours, after an update or, once stopped, without one.
     bool tick(uint32_t now_ms);
 
     // Whether an update is under way: tick again soon.

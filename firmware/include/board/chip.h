@@ -6,10 +6,15 @@
 namespace tilenca {
 namespace board {
 
-// Milliseconds since boot; wraps after 49 days.
+// Starts the clock, on timer 4, and stops Arduino's millis(), whose long interrupt would delay the links'
+// edges.
+void clock_begin();
+
+// Milliseconds since clock_begin(); wraps after 49 days. Call it at least every quarter of a second.
 uint32_t now_ms();
 
-// Sleeps until the next interrupt, at most about a millisecond.
+// Sleeps until the millisecond after the one that now_ms() told last. Interrupts for single bits and bytes
+// wake the processor, but not the main loop: what they bring has room for several milliseconds.
 void sleep();
 
 // Copies bytes from EEPROM, from address 0.

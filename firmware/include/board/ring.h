@@ -9,37 +9,33 @@ namespace board {
 // Holds kSize - 1 bytes; kSize is a power of two, at most 256, so that indices are single bytes and therefore
 // never half-written when an interrupt looks.
 template <uint16_t kSize>
-class Ring {
-  public:
-    bool empty() const { return head_ == tail_; }
+struct Ring {
+    static_assert(kSize <= 256 && (kSize & (kSize - 1)) == 0, "indices wrap by masking");
+    static constexpr uint8_t kWrap = kSize - 1;
 
-    uint8_t room() const { return static_cast<uint8_t>((tail_ - head_ - 1) & kMask); }
+    bool empty() const { return head == tail; }
 
-    // A byte for which there is no room is dropped.
+    uint8_t room() const { return static_cast<uint8_t>((tail - head - 1) & kWrap); }
+
+    // Only when there is room().
     void put(uint8_t byte) {
-        const uint8_t head = head_;
-        const uint8_t next = (head + 1) & kMask;
-        if (next != tail_) {
-            bytes_[head] = byte;
-            head_ = next;
-        }
+        const uint8_t at = head;
+        bytes[at] = byte;
+        head = (at + 1) & kWrap;
     }
 
     // Only when not empty().
     uint8_t take() {
-        const uint8_t tail = tail_;
-        const uint8_t byte = bytes_[tail];
-        tail_ = (tail + 1) & kMask;
+        const uint8_t at = tail;
+        const uint8_t byte = bytes[at];
+        tail = (at + 1) & kWrap;
         return byte;
     }
 
-  private:
-    static_assert(kSize <= 256 && (kSize & (kSize - 1)) == 0, "indices wrap by masking");
-    static constexpr uint8_t kMask = kSize - 1;
-
-    volatile uint8_t head_ = 0;
-    volatile uint8_t tail_ = 0;
-    volatile uint8_t bytes_[kSize];
+    // Plain members, since interrupts in assembly work on them too.
+    volatile uint8_t head = 0; // where the next byte goes
+    volatile uint8_t tail = 0; // the oldest byte
+    volatile uint8_t bytes[kSize];
 };
 
 } // namespace board

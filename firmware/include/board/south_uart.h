@@ -9,8 +9,8 @@
 namespace tilenca {
 namespace board {
 
-// Counts of timer 1 per bit: 16 MHz / 38,400 is 416.7. Slightly slow on purpose: the receiver then samples the
-// stop bit well before the next start bit, even if that one comes early after an edge that came late.
+// Counts of timer 1 per bit: 16 MHz / 38,400 is 416.7. Slightly slow on purpose: the receiver then samples
+// the stop bit well before the next start bit, even if that one comes early after an edge that came late.
 constexpr uint16_t kSouthBitCycles = 420;
 
 // Takes timers 1 and 5 and the pin-change interrupt of port K.

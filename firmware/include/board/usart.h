@@ -1,5 +1,5 @@
-// The four hardware UARTs, by number. Short interrupts of our own instead of Arduino's Serial objects: whatever
-// runs while the south link's line changes makes that edge's time stamp late.
+// The four hardware UARTs, by number. Short interrupts of our own instead of Arduino's Serial objects:
+// whatever runs while the south link's line changes makes that edge's time stamp late.
 #pragma once
 
 #include <stdint.h>

@@ -16,8 +16,8 @@ class Cell {
     // The state every cell starts from: 1.0 in channel 0, else zero. Gives up an update in progress.
     void seed();
 
-    // Takes in the own message and the neighbours' (C values each, nullptr: absent, which reads as zeros), and
-    // begins an update with them. The messages are copied.
+    // Takes in the own message and the neighbours' (C values each, nullptr: absent, which reads as zeros),
+    // and begins an update with them. The messages are copied.
     void perceive(const int8_t* const (&neighbours)[kSides]);
 
     // One slice of the update that perceive() began; true when this completed it.
@@ -41,8 +41,8 @@ class Cell {
 
     const Network& network_;
     Forward forward_;
-    int16_t state_[kMaxChannels];
-    int8_t inputs_[kMaxInputs]; // the own message lies where the network reads it
+    int16_t state_[kMaxChannels] = {};
+    int8_t inputs_[kMaxInputs] = {}; // the own message lies where the network reads it
 };
 
 } // namespace tilenca

@@ -15,19 +15,19 @@ class EdgeReceiver {
     // `bit_counts`: length of a bit in counts of the timer that stamps the edges, at least 8.
     explicit EdgeReceiver(uint8_t bit_counts) : bit_counts_(bit_counts) {}
 
-    // The line changed. Bit 0 of the stamp is the new level, the others are the timer's count. Returns the byte
-    // that this completed, or kNoByte.
+    // The line changed. Bit 0 of the stamp is the new level, the others are the timer's count. Returns the
+    // byte that this completed, or kNoByte.
     int16_t edge(uint16_t stamp);
 
-    // No further edge came until `now`. Returns the byte that this completed, or kNoByte. Call it at least four
-    // times per turn of the timer, or a byte without edges at its end waits for the next one.
+    // No further edge came until `now`. Returns the byte that this completed, or kNoByte. Call it at least
+    // four times per turn of the timer, or a byte without edges at its end waits for the next one.
     int16_t poll(uint16_t now);
 
   private:
     static constexpr uint8_t kIdle = 0xFF;
 
     uint8_t bit_counts_;
-    bool level_ = true; // of the line since the last edge
+    bool level_ = true;   // of the line since the last edge
     uint8_t bit_ = kIdle; // next to be sampled: 0 the start bit, 1..8 data, 9 the stop bit
     uint8_t byte_ = 0;
     uint16_t sample_at_ = 0; // the middle of that bit

@@ -1,8 +1,9 @@
 // Read-only data in flash, and the only header that knows how flash is read.
 //
 // The AVR cannot read flash through an ordinary pointer: that compiles and returns whatever SRAM holds at the
-// address. A FlashView therefore never becomes a pointer, on no machine, so that a forgotten flash read does not
-// compile, natively included. Data declared with TILENCA_FLASH must lie in the low 64 KiB, where LPM reaches.
+// address. A FlashView therefore never becomes a pointer, on no machine, so that a forgotten flash read does
+// not compile, natively included. Data declared with TILENCA_FLASH must lie in the low 64 KiB, where LPM
+// reaches.
 #pragma once
 
 #include <stddef.h>
@@ -18,7 +19,8 @@
 
 namespace tilenca {
 
-// Reads consecutive bytes. A stream needs no address arithmetic per byte, which halves the network's inner loop.
+// Reads consecutive bytes. A stream needs no address arithmetic per byte, which halves the network's inner
+// loop.
 class FlashBytes {
   public:
     explicit FlashBytes(const int8_t* first) : next_(first) {}

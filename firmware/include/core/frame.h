@@ -1,4 +1,5 @@
-// Frames between tiles: docs/PROTOCOL.md section 1. Twin of Frame and FrameDecoder in host/tilenca/protocol.py.
+// Frames between tiles: docs/PROTOCOL.md section 1. Twin of Frame and FrameDecoder in
+// host/tilenca/protocol.py.
 #pragma once
 
 #include <stdint.h>
@@ -21,8 +22,8 @@ struct FrameHeader {
     uint16_t model_id;
 };
 
-// Writes the frame of `channels` messages as it goes on the wire, delimiter included; returns its size, at most
-// kMaxFrame.
+// Writes the frame of `channels` messages as it goes on the wire, delimiter included; returns its size, at
+// most kMaxFrame.
 uint8_t encode_frame(FrameHeader header, const int8_t* messages, uint8_t channels, uint8_t* wire);
 
 // Receives one byte at a time and says when a whole, checked frame has arrived.
@@ -48,7 +49,7 @@ class FrameDecoder {
 
     uint8_t channels_;
     uint8_t size_ = 0; // bytes since the last delimiter; stops one beyond what fits
-    uint8_t bytes_[kMaxPayload + 1];
+    uint8_t bytes_[kMaxPayload + 1] = {};
 };
 
 } // namespace tilenca

@@ -1,4 +1,5 @@
-// What is known of the neighbour on one side: its last message, whether it still speaks, and how well the line does.
+// What is known of the neighbour on one side: its last message, whether it still speaks, and how well the
+// line does.
 #pragma once
 
 #include <stdint.h>
@@ -37,7 +38,8 @@ class Link {
     // Whether the neighbour spoke lately and runs the same model.
     bool alive() const { return alive_; }
 
-    // Its last message, `channels` values, or nullptr while not alive. Valid until the next receive() or tick().
+    // Its last message, `channels` values, or nullptr while not alive. Valid until the next receive() or
+    // tick().
     const int8_t* message() const { return alive_ ? message_ : nullptr; }
 
     // Writes the next frame to the neighbour (at most kMaxFrame bytes) and counts it as sent.
@@ -61,7 +63,7 @@ class Link {
     uint8_t sequence_in_ = 0;  // of the last good frame
     uint8_t sequence_out_ = 0; // of the next frame to send
     uint32_t last_ms_ = 0;
-    int8_t message_[kMaxChannels];
+    int8_t message_[kMaxChannels] = {};
 };
 
 } // namespace tilenca

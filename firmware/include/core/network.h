@@ -54,8 +54,8 @@ class Forward {
   public:
     explicit Forward(const Network& network) : network_(network) {}
 
-    // Starts an update: `inputs` (5 C messages) and `state` (C values, changed in place) stay the caller's and
-    // must live until done().
+    // Starts an update: `inputs` (5 C messages) and `state` (C values, changed in place) stay the caller's
+    // and must live until done().
     void begin(const int8_t* inputs, int16_t* state);
 
     // Computes at most kOutputsPerSlice outputs, about a millisecond on the chip. No effect when done.
@@ -78,8 +78,8 @@ class Forward {
     Stage stage_ = Stage::Done;
     uint8_t from_ = 0; // first output of the current layer that is not computed yet
     uint8_t to_ = 0;   // end of the current slice
-    int8_t hidden1_[kMaxHidden];
-    int8_t hidden2_[kMaxHidden];
+    int8_t hidden1_[kMaxHidden] = {};
+    int8_t hidden2_[kMaxHidden] = {};
 };
 
 } // namespace tilenca

@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model 6872; do not edit. Body 7f27df94667fd0a1
+// Rendered by `tilenca export` from model D702; do not edit. Body a69f575039b119d8
 #pragma once
 
 #include <stdint.h>
@@ -8,7 +8,7 @@
 namespace tilenca {
 namespace model {
 
-constexpr uint16_t kModelId = 0x6872;
+constexpr uint16_t kModelId = 0xD702;
 constexpr uint8_t kChannels = 21;
 constexpr uint8_t kHidden1 = 40;
 constexpr uint8_t kHidden2 = 40;

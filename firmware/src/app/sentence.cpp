@@ -4,7 +4,9 @@ namespace tilenca {
 
 namespace {
 
-char hex_digit(uint8_t value) { return static_cast<char>(value < 10 ? '0' + value : 'A' - 10 + value); }
+char hex_digit(uint8_t value) {
+    return static_cast<char>(value < 10 ? '0' + value : 'A' - 10 + value);
+}
 
 } // namespace
 

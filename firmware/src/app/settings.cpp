@@ -6,7 +6,9 @@ namespace tilenca {
 
 namespace {
 
-uint16_t word_at(const uint8_t* bytes) { return bytes[0] | static_cast<uint16_t>(bytes[1]) << 8; }
+uint16_t word_at(const uint8_t* bytes) {
+    return bytes[0] | static_cast<uint16_t>(bytes[1]) << 8;
+}
 
 } // namespace
 

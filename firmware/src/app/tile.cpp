@@ -25,7 +25,9 @@ void Tile::restart() {
     tell();
 }
 
-void Tile::receive(Side side, uint8_t byte, uint32_t now_ms) { links_[index_of(side)].receive(byte, now_ms); }
+void Tile::receive(Side side, uint8_t byte, uint32_t now_ms) {
+    links_[index_of(side)].receive(byte, now_ms);
+}
 
 bool Tile::tick(uint32_t now_ms) {
     for (Link& link : links_) {
@@ -56,7 +58,8 @@ bool Tile::period_ends(uint32_t now_ms) {
     if (late_ms < 0) {
         return false;
     }
-    // The phase stays what it was at boot, however late the call: whole periods that were missed are left out.
+    // The phase stays what it was at boot, however late the call: whole periods that were missed are left
+    // out.
     const uint32_t missed = static_cast<uint32_t>(late_ms) / settings_.period_ms;
     due_ms_ += (missed + 1) * settings_.period_ms;
     return true;

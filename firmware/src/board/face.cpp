@@ -47,9 +47,13 @@ void show_colour(uint8_t red, uint8_t green, uint8_t blue) {
     TCCR3A |= 1 << COM3C1;
 }
 
-void show_led(uint8_t index, bool lit) { set(kDebugLeds[index], lit); }
+void show_led(uint8_t index, bool lit) {
+    set(kDebugLeds[index], lit);
+}
 
-bool button_closed() { return !is_high(kButton); }
+bool button_closed() {
+    return !is_high(kButton);
+}
 
 } // namespace board
 } // namespace tilenca

@@ -11,7 +11,9 @@ namespace {
 
 constexpr uint32_t kLinkBaud = 38400;
 
-uint8_t usart_of(Side side) { return kSideUsart[index_of(side)]; }
+uint8_t usart_of(Side side) {
+    return kSideUsart[index_of(side)];
+}
 
 } // namespace
 
@@ -30,7 +32,9 @@ bool link_read(Side side, uint8_t* byte) {
     return side == Side::South ? south_read(byte) : usart_read(usart_of(side), byte);
 }
 
-bool link_idle(Side side) { return side == Side::South ? south_idle() : usart_idle(usart_of(side)); }
+bool link_idle(Side side) {
+    return side == Side::South ? south_idle() : usart_idle(usart_of(side));
+}
 
 void link_write(Side side, const uint8_t* bytes, uint8_t size) {
     if (side == Side::South) {

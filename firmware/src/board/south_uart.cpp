@@ -19,16 +19,17 @@ static_assert(kSouthRx.port == 'K' && kSouthRx.bit == 6, "PCINT22 and the interr
 static_assert(kSouthTx.port == 'K' && kSouthTx.bit == 7, "the toggles below leave from bit 7");
 
 // GPIOR registers stand in for variables where a cycle counts: `in` and `out` take one, `lds` and `sts` two.
-#define SOUTH_EDGE_HEAD GPIOR2  // where the next edge's stamp goes
-#define SOUTH_BITS GPIOR0       // toggles left of the current byte, the next in bit 7
-#define SOUTH_BITS_LEFT GPIOR1  // how many
+#define SOUTH_EDGE_HEAD GPIOR2 // where the next edge's stamp goes
+#define SOUTH_BITS GPIOR0      // toggles left of the current byte, the next in bit 7
+#define SOUTH_BITS_LEFT GPIOR1 // how many
 
 // The edges' stamps: all low bytes, then all high bytes, so that one index serves both and wraps by itself.
 volatile uint8_t edge_low_high[2][256];
 uint8_t edge_tail = 0;
 EdgeReceiver receiver(kSouthBitCounts);
 
-uint8_t toggles[kMaxToggleBytes];
+// The interrupt reads one byte beyond the last before it notices.
+volatile uint8_t toggles[kMaxToggleBytes + 1];
 volatile uint8_t toggle_at = 0;
 volatile uint8_t toggle_end = 0;
 
@@ -78,7 +79,8 @@ bool south_read(uint8_t* byte) {
 }
 
 void south_write(const uint8_t* bytes, uint8_t size) {
-    toggle_end = toggles_of(bytes, size, toggles);
+    // The interrupt is off while this writes.
+    toggle_end = toggles_of(bytes, size, const_cast<uint8_t*>(toggles));
     toggle_at = 1;
     SOUTH_BITS = toggles[0];
     SOUTH_BITS_LEFT = 8;
@@ -86,25 +88,61 @@ void south_write(const uint8_t* bytes, uint8_t size) {
     TIMSK1 = 1 << OCIE1B;
 }
 
-bool south_idle() { return TIMSK1 == 0; }
-
-ISR(TIMER1_COMPB_vect) {
-    // First of all the line, so that every edge is equally late.
-    PINK = SOUTH_BITS & 0x80;
-    SOUTH_BITS <<= 1;
-    if (--SOUTH_BITS_LEFT == 0) {
-        SOUTH_BITS_LEFT = 8;
-        const uint8_t at = toggle_at;
-        if (at == toggle_end) {
-            TIMSK1 = 0;
-        }
-        SOUTH_BITS = toggles[at];
-        toggle_at = at + 1;
-    }
+bool south_idle() {
+    return TIMSK1 == 0;
 }
 
-// Stores timer 5's count with the line's level in bit 0. By hand, since every other interrupt waits for it: 50
-// cycles where the compiler needs 80. Z points to the slot of the low byte, 256 further lies the high byte's.
+// By hand, both: every other interrupt waits for these, and what an edge is late by is lost from the half bit
+// that a receiver's sampling allows. The compiler needs twice the cycles.
+
+// First of all the line, so that every edge comes equally late; then, every eighth time, the next toggles.
+ISR(TIMER1_COMPB_vect, ISR_NAKED) {
+    __asm__ volatile("push r24 \n\t"
+                     "in r24, __SREG__ \n\t"
+                     "push r24 \n\t"
+                     "push r25 \n\t"
+                     "in r24, %[bits] \n\t"
+                     "mov r25, r24 \n\t"
+                     "andi r25, 0x80 \n\t"
+                     "sts %[pins], r25 \n\t"
+                     "lsl r24 \n\t"
+                     "out %[bits], r24 \n\t"
+                     "in r24, %[left] \n\t"
+                     "dec r24 \n\t"
+                     "out %[left], r24 \n\t"
+                     "brne 2f \n\t"
+                     "push r30 \n\t"
+                     "push r31 \n\t"
+                     "ldi r24, 8 \n\t"
+                     "out %[left], r24 \n\t"
+                     "lds r30, %[at] \n\t"
+                     "lds r24, %[end] \n\t"
+                     "sub r24, r30 \n\t"
+                     "brne 1f \n\t"
+                     "sts %[mask], r24 \n\t" // all are out: no more interrupts
+                     "1: mov r31, r30 \n\t"
+                     "inc r31 \n\t"
+                     "sts %[at], r31 \n\t"
+                     "clr r31 \n\t"
+                     "subi r30, lo8(-(%[toggles])) \n\t"
+                     "sbci r31, hi8(-(%[toggles])) \n\t"
+                     "ld r24, Z \n\t"
+                     "out %[bits], r24 \n\t"
+                     "pop r31 \n\t"
+                     "pop r30 \n\t"
+                     "2: pop r25 \n\t"
+                     "pop r24 \n\t"
+                     "out __SREG__, r24 \n\t"
+                     "pop r24 \n\t"
+                     "reti \n\t"
+                     :
+                     : [bits] "I"(_SFR_IO_ADDR(SOUTH_BITS)), [left] "I"(_SFR_IO_ADDR(SOUTH_BITS_LEFT)),
+                       [pins] "n"(_SFR_MEM_ADDR(PINK)), [mask] "n"(_SFR_MEM_ADDR(TIMSK1)),
+                       [at] "i"(&toggle_at), [end] "i"(&toggle_end), [toggles] "i"(toggles));
+}
+
+// Stores timer 5's count with the line's level in bit 0. Z points to the slot of the low byte; 256 further
+// lies the high byte's.
 ISR(PCINT2_vect, ISR_NAKED) {
     __asm__ volatile("push r24 \n\t"
                      "in r24, __SREG__ \n\t"

@@ -10,7 +10,9 @@ constexpr int16_t kSeedState = 1 << 13; // 1.0
 
 } // namespace
 
-Cell::Cell(const Network& network) : network_(network), forward_(network) { seed(); }
+Cell::Cell(const Network& network) : network_(network), forward_(network) {
+    seed();
+}
 
 void Cell::seed() {
     forward_.stop();

@@ -8,8 +8,8 @@ namespace {
 
 constexpr uint8_t kVersionAndKind = kProtocolVersion << 4 | kKindState;
 
-// Replaces every zero of bytes[1..size] by the distance to the next one; bytes[0] starts the chain. The payload
-// is shorter than COBS's longest block, so the blocks need no splitting.
+// Replaces every zero of bytes[1..size] by the distance to the next one; bytes[0] starts the chain. The
+// payload is shorter than COBS's longest block, so the blocks need no splitting.
 void do_cobs(uint8_t* bytes, uint8_t size) {
     uint8_t code_at = 0;
     for (uint8_t i = 1; i <= size; ++i) {

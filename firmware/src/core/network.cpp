@@ -14,21 +14,29 @@ int32_t accumulate(const Layer& layer, uint8_t output, const int8_t* inputs) {
     return sum;
 }
 
-uint8_t smaller(uint8_t a, uint8_t b) { return a < b ? a : b; }
+uint8_t smaller(uint8_t a, uint8_t b) {
+    return a < b ? a : b;
+}
+
+int16_t clamp(int32_t value, int16_t low, int16_t high) {
+    if (value < low) {
+        return low;
+    }
+    return value > high ? high : static_cast<int16_t>(value);
+}
 
 } // namespace
 
 void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs) {
     for (uint8_t j = from; j < to; ++j) {
         const int32_t rounded = (accumulate(layer, j, inputs) + (1 << (kHiddenShift - 1))) >> kHiddenShift;
-        outputs[j] = rounded < 0 ? 0 : rounded > kHiddenMax ? kHiddenMax : static_cast<int8_t>(rounded);
+        outputs[j] = static_cast<int8_t>(clamp(rounded, 0, kHiddenMax));
     }
 }
 
 void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state) {
     for (uint8_t c = from; c < to; ++c) {
-        const int32_t sum = state[c] + accumulate(layer, c, inputs);
-        state[c] = sum < -kStateMax ? -kStateMax : sum > kStateMax ? kStateMax : static_cast<int16_t>(sum);
+        state[c] = clamp(state[c] + accumulate(layer, c, inputs), -kStateMax, kStateMax);
     }
 }
 

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -52,9 +51,12 @@ class Line {
     bool level_ = true;
 };
 
-uint16_t count_at(double cycle) { return static_cast<uint16_t>(static_cast<uint64_t>(cycle) / 8); }
+uint16_t count_at(double cycle) {
+    return static_cast<uint16_t>(static_cast<uint64_t>(cycle) / 8);
+}
 
-// Receives a line as the board does: every so often the main loop comes by, takes what edges there are, and polls.
+// Receives a line as the board does: every so often the main loop comes by, takes what edges there are, and
+// polls.
 std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, double late_cycles = 0,
                              double loop_cycles = 16000, uint32_t seed = 1) {
     Numbers numbers(seed);

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -64,7 +63,8 @@ TEST_CASE("every case of the shared table") {
     for (const FrameCase& frame_case : kCases) {
         CAPTURE(frame_case.name);
         FrameDecoder decoder(frame_case.channels);
-        CHECK(events_of(decoder, frame_case.channels, test::bytes_of_hex(frame_case.line)) == frame_case.events);
+        CHECK(events_of(decoder, frame_case.channels, test::bytes_of_hex(frame_case.line)) ==
+              frame_case.events);
     }
 }
 

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <type_traits>
@@ -26,7 +25,8 @@ struct NetworkCase {
 };
 
 const NetworkCase kCases[] = {
-#define CASE(name, c, h1, h2, seed, reach, updates, first, crc) {name, c, h1, h2, seed, reach, updates, first, crc},
+#define CASE(name, c, h1, h2, seed, reach, updates, first, crc)                                              \
+    {name, c, h1, h2, seed, reach, updates, first, crc},
 #include "networks.inc"
 #undef CASE
 };
@@ -93,7 +93,8 @@ TEST_CASE("every state of a long run is that of the numpy reference") {
         for (int i = 0; i < golden.updates; ++i) {
             const auto messages = numbers.draw_all<int8_t>(kSides * golden.channels, -127, 127);
             const int8_t* first = messages.data();
-            update(cell, {first, first + golden.channels, first + 2 * golden.channels, first + 3 * golden.channels});
+            update(cell, {first, first + golden.channels, first + 2 * golden.channels,
+                          first + 3 * golden.channels});
             all_states.insert(all_states.end(), cell.state(), cell.state() + golden.channels);
             if (i == 0) {
                 CHECK(text_of(cell.state(), golden.channels) == golden.first_state);
@@ -191,9 +192,10 @@ TEST_CASE("the best class has the greatest stored score, the first among equals"
         biases.insert(biases.end(), scores.begin(), scores.end());
         const FlashView<int8_t> no_weights(zeros.data());
         const int16_t no_bias = 0;
-        const Network network = {{static_cast<uint8_t>(5 * channels), 1, no_weights, FlashView<int16_t>(&no_bias)},
-                                 {1, 1, no_weights, FlashView<int16_t>(&no_bias)},
-                                 {1, channels, no_weights, FlashView<int16_t>(biases.data())}};
+        const Network network = {
+            {static_cast<uint8_t>(5 * channels), 1, no_weights, FlashView<int16_t>(&no_bias)},
+            {1, 1, no_weights, FlashView<int16_t>(&no_bias)},
+            {1, channels, no_weights, FlashView<int16_t>(biases.data())}};
         Cell cell(network);
         update(cell, {nullptr, nullptr, nullptr, nullptr});
         return cell.best_class(static_cast<uint8_t>(scores.size()));

@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include "../support.h"
@@ -30,7 +29,9 @@ const char* line_of(const std::string& name) {
     return nullptr;
 }
 
-std::string text_of(const Sentence& sentence) { return {sentence.bytes(), sentence.size()}; }
+std::string text_of(const Sentence& sentence) {
+    return {sentence.bytes(), sentence.size()};
+}
 
 // Three channels; every state grows by 1/8192 * (bias) per update, so that texts are known beforehand.
 struct Fixture {

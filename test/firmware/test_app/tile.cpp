@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>
@@ -20,7 +19,8 @@ constexpr uint8_t kNobody = 0xFF;
 // What the line between two tiles may do to a frame: change it in place, repeat it, or swallow it.
 using Fault = std::function<std::vector<std::vector<uint8_t>>(std::vector<uint8_t>)>;
 
-// Tiles wired to each other in one process; the test owns the clock. Frames arrive within the same millisecond.
+// Tiles wired to each other in one process; the test owns the clock. Frames arrive within the same
+// millisecond.
 class Array {
   public:
     Array(const Model& model, Settings settings, std::vector<std::array<uint8_t, kSides>> neighbours)
@@ -139,7 +139,8 @@ TEST_CASE_FIXTURE(Fixture, "tiles in step do what cells in step do, update by up
     }
 }
 
-TEST_CASE_FIXTURE(Fixture, "at boot a tile tells its seed on all sides and shows nothing before its first update") {
+TEST_CASE_FIXTURE(Fixture,
+                  "at boot a tile tells its seed on all sides and shows nothing before its first update") {
     Tile tile(model, {0, 100, 0}, 5000);
     uint8_t wire[kMaxFrame];
     FrameDecoder decoder(6);
@@ -241,7 +242,8 @@ TEST_CASE_FIXTURE(Fixture, "a restarted tile is the seed, shows nothing, and beg
     CHECK(square[2].link(Side::North).counters().lost == 0);
 }
 
-TEST_CASE_FIXTURE(Fixture, "a tile taken away is a zero state after four periods and 20 ms, and may come back") {
+TEST_CASE_FIXTURE(Fixture,
+                  "a tile taken away is a zero state after four periods and 20 ms, and may come back") {
     Array square(model, {0, 100, 0}, kSquare);
     square.run_until(1050);
     square.take_away(1);

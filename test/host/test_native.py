@@ -1,0 +1,136 @@
+"""The firmware's core on the host against the arithmetic of docs/PROTOCOL.md, written out in numpy."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tilenca import native
+from tilenca.errors import BuildError
+from tilenca.modelfile import Dimensions, Model
+
+SEED_STATE = 8192
+
+
+def random_model(size: Dimensions, reach: int, seed: int) -> Model:
+    """A model with weights of up to +-reach and biases of up to 256 times that."""
+    rng = np.random.default_rng(seed)
+    integer: dict[str, NDArray[np.int8] | NDArray[np.int16]] = {}
+    for name, shape in size.shapes().items():
+        if name.startswith("w"):
+            integer[name] = rng.integers(-reach, reach + 1, shape).astype(np.int8)
+        else:
+            integer[name] = rng.integers(-256 * reach, 256 * reach + 1, shape).astype(np.int16)
+    return Model(("0",), size, integer, {name: array.astype(np.float32) for name, array in integer.items()})
+
+
+def reference(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8]) -> NDArray[np.int64]:
+    """One update in int64, which nothing here can overflow."""
+    wide = {name: array.astype(np.int64) for name, array in model.integer.items()}
+    hidden = np.clip((inputs.astype(np.int64) @ wide["w1"].T + wide["b1"] + 32) >> 6, 0, 127)
+    hidden = np.clip((hidden @ wide["w2"].T + wide["b2"] + 32) >> 6, 0, 127)
+    new_states: NDArray[np.int64] = np.clip(states + hidden @ wide["w3"].T + wide["b3"], -16256, 16256)
+    return new_states
+
+
+SIZES = [
+    Dimensions(),
+    Dimensions(1, 1, 1),
+    Dimensions(3, 9, 7),
+    Dimensions(51, 127, 127),
+    Dimensions(37, 64, 64),
+]
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("reach", [2, 20, 127])
+def test_every_state_of_a_long_run_is_the_reference(size: Dimensions, reach: int) -> None:
+    """A ring of cells that hear each other on all four sides."""
+    model = random_model(size, reach, seed=reach)
+    states = np.zeros((12, size.channels), dtype=np.int16)
+    states[:, 0] = SEED_STATE
+    # Cells that differ, or all would stay equal: some start at the extremes.
+    states[1:4] = [[16256], [-16256], [-1]]
+    for step in range(200):
+        messages = ((states.astype(np.int32) + 64) >> 7).astype(np.int8)
+        taps = [np.roll(messages, shift, axis=0) for shift in (0, 1, 2, 3)]
+        inputs = np.concatenate([*taps, np.zeros_like(messages)], axis=1)
+        expected = reference(model, states, inputs)
+        states = native.update_cells(model, states, inputs)
+        assert states.dtype == np.int16
+        np.testing.assert_array_equal(states, expected, err_msg=f"step {step}")
+
+
+@pytest.mark.parametrize("weight", [-127, 127])
+@pytest.mark.parametrize("bias", [-32768, 32767])
+@pytest.mark.parametrize("message", [-127, 127])
+@pytest.mark.parametrize("state", [-16256, 16256])
+def test_nothing_wraps_at_the_extremes(weight: int, bias: int, message: int, state: int) -> None:
+    size = Dimensions(51, 127, 127)
+    integer = {
+        name: np.full(
+            shape, weight if name.startswith("w") else bias, np.int8 if name.startswith("w") else np.int16
+        )
+        for name, shape in size.shapes().items()
+    }
+    model = Model(("0",), size, integer, {})
+    states = np.full((3, 51), state, dtype=np.int16)
+    inputs = np.full((3, 255), message, dtype=np.int8)
+    np.testing.assert_array_equal(
+        native.update_cells(model, states, inputs), reference(model, states, inputs)
+    )
+
+
+def test_any_number_of_leading_axes_and_no_change_of_the_arguments() -> None:
+    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    rng = np.random.default_rng(2)
+    states = rng.integers(-16256, 16257, (2, 3, 5, 4)).astype(np.int16)
+    inputs = rng.integers(-127, 128, (2, 3, 5, 20)).astype(np.int8)
+    before = states.copy(), inputs.copy()
+    together = native.update_cells(model, states, inputs)
+    assert together.shape == states.shape
+    np.testing.assert_array_equal(states, before[0])
+    np.testing.assert_array_equal(inputs, before[1])
+    np.testing.assert_array_equal(
+        native.update_cells(model, states[1, 2, 3], inputs[1, 2, 3]), together[1, 2, 3]
+    )
+    strided = native.update_cells(model, states[:, ::2], inputs[:, ::2])
+    np.testing.assert_array_equal(strided, together[:, ::2])
+
+
+def test_no_cells_are_no_work() -> None:
+    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    none = native.update_cells(model, np.zeros((0, 4), np.int16), np.zeros((0, 20), np.int8))
+    assert none.shape == (0, 4)
+
+
+@pytest.mark.parametrize(
+    ("states", "inputs"),
+    [
+        (np.zeros((3, 4), np.int32), np.zeros((3, 20), np.int8)),
+        (np.zeros((3, 5), np.int16), np.zeros((3, 20), np.int8)),
+        (np.zeros((3, 4), np.int16), np.zeros((3, 21), np.int8)),
+        (np.zeros((3, 4), np.int16), np.zeros((2, 20), np.int8)),
+        (np.zeros((3, 4), np.int16), np.zeros((3, 20), np.uint8)),
+    ],
+)
+def test_arrays_that_do_not_fit_the_model_are_refused(
+    states: NDArray[np.int16], inputs: NDArray[np.int8]
+) -> None:
+    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    with pytest.raises(ValueError, match="need"):
+        native.update_cells(model, states, inputs)
+
+
+@pytest.mark.parametrize("content", [None, b"not a library"])
+def test_a_missing_or_damaged_library_names_the_remedy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, content: bytes | None
+) -> None:
+    library = tmp_path / "libtilenca_core.so"
+    if content is not None:
+        library.write_bytes(content)
+    monkeypatch.setattr(native, "LIBRARY", library)
+    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    with pytest.raises(BuildError, match=f"{library}.*make setup"):
+        native.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8))
