@@ -31,6 +31,7 @@ WORKERS = 2
 MAX_TILES = 255  # a tile's number is one byte
 PLAIN_WIDTH = 80
 DEFAULT_UPDATES = 30
+NO_BOOTLOADER = "none"
 
 Listener = Callable[[Emulation, list[Heard]], None]
 
@@ -79,9 +80,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     look.add_argument(
         "--serve", type=Path, metavar="DIR", help="give each tile's USB serial as DIR/tile-01, ..."
     )
-    add(
-        "--bootloader", type=Path, metavar="F", help="with --serve: image of the boot section (the stock one)"
-    )
+    add("--bootloader", metavar="F", help="with --serve: image of the boot section, or none (the stock one)")
     add("--keep-running", action="store_true", help="with --serve: opening a port does not reset its tile")
 
 
@@ -254,12 +253,18 @@ def _serve(
 ) -> int:
     if len(shapes) != 1:
         raise UsageError(f"--serve needs one shape, got {len(shapes)}; give --shape NAME")
-    bootloader = args.bootloader or (STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None)
+    bootloader = _bootloader(args.bootloader)
     settled = Conditions(**{**vars(conditions), "bootloader": bootloader})
     emulation = Emulation(task, shapes[0], args.elf, settled, defaults)
     with emulation.array:
         serve(emulation, args.serve, args.seconds, reset_on_open=not args.keep_running)
     return 0
+
+
+def _bootloader(given: str | None) -> Path | None:
+    if given is None:
+        return STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
+    return None if given == NO_BOOTLOADER else Path(given)
 
 
 def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:
@@ -269,9 +274,9 @@ def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:
         print(json.dumps(reports[0] if len(reports) == 1 else {"runs": reports, "all_right": all_right}))
         return
     console = Console(highlight=False)
-    console.print(
-        beside([o.picture for o in outcomes], console.width if console.is_terminal else PLAIN_WIDTH)
-    )
+    if not (args.watch and console.is_terminal):  # there the last picture still stands
+        width = console.width if console.is_terminal else PLAIN_WIDTH
+        console.print(beside([outcome.picture for outcome in outcomes], width))
     for outcome in outcomes:
         console.print(outcome.verdict, soft_wrap=True, markup=False)
     right = sum(outcome.report["all_right"] for outcome in outcomes)

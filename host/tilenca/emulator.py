@@ -271,6 +271,7 @@ class Array:
             BuildError: the emulator is not built, or the image cannot be read or is for another chip.
             UsageError: the lists do not fit the number of tiles.
         """
+        self.handle: int | None = None
         ppm, switch_on_s = ppm or [0.0] * tiles, switch_on_s or [0.0] * tiles
         if tiles < 1 or len(ppm) != tiles or len(switch_on_s) != tiles:
             raise UsageError(
@@ -329,6 +330,9 @@ class Array:
         if self.handle:
             _library().tilenca_array_free(self.handle)
             self.handle = None
+
+    def __del__(self) -> None:
+        self.close()
 
     def __enter__(self) -> "Array":
         return self

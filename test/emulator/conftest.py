@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
 from tilenca.emulator import LIBRARY
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,10 +34,10 @@ def avr(tmp_path: Path) -> Compile:
     if shutil.which("avr-gcc") is None:
         pytest.skip("avr-gcc is not installed; run `make setup`")
 
-    def compile_program(source: str, *options: str, name: str = "program") -> Path:
-        text, elf = tmp_path / f"{name}.c", tmp_path / f"{name}.elf"
+    def compile_program(source: str, *options: str, mcu: str = "atmega2560") -> Path:
+        text, elf = tmp_path / "program.c", tmp_path / "program.elf"
         text.write_text(PRELUDE + source)
-        flags = ("-mmcu=atmega2560", "-DF_CPU=16000000UL", "-Os", "-std=gnu11", "-Wall", "-Werror")
+        flags = (f"-mmcu={mcu}", "-DF_CPU=16000000UL", "-Os", "-std=gnu11", "-Wall", "-Werror")
         run_tool("avr-gcc", *flags, *options, text, "-o", elf)
         return elf
 

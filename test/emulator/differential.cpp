@@ -2,8 +2,8 @@
 //
 //   differential random COUNT SEED      differential program ELF INSTRUCTIONS
 //
-// Prints what was compared and exits 0, or prints the first disagreements and exits 1. Instructions that reach into
-// peripherals are left out: what those do is tested against the data sheet.
+// Prints what was compared and exits 0, or prints the first disagreements and exits 1. Instructions that
+// reach into peripherals are left out: what those do is tested against the data sheet.
 #include "avr/alu.h"
 #include "avr/chip.h"
 #include "avr/flow.h"
@@ -61,7 +61,8 @@ uint16_t their_stack(const avr_t* avr) {
 
 bool touches_io(const Instruction& in) {
     const Handler run = in.run;
-    if (run != ops::in && run != ops::out && run != ops::sbi && run != ops::cbi && run != ops::sbic && run != ops::sbis) {
+    if (run != ops::in && run != ops::out && run != ops::sbi && run != ops::cbi && run != ops::sbic &&
+        run != ops::sbis) {
         return false;
     }
     for (const uint16_t address : kPlainIo) {
@@ -79,11 +80,16 @@ bool is_undefined(uint16_t opcode) {
     }
     const unsigned pair = (opcode >> 4 & 31) & ~1u;
     switch (opcode & 15) {
-    case 1: case 2: case 5: case 7:
+    case 1:
+    case 2:
+    case 5:
+    case 7:
         return pair == 30;
-    case 9: case 10:
+    case 9:
+    case 10:
         return pair == 28;
-    case 13: case 14:
+    case 13:
+    case 14:
         return pair == 26;
     default:
         return false;
@@ -92,8 +98,9 @@ bool is_undefined(uint16_t opcode) {
 
 bool is_comparable(uint16_t opcode, const Instruction& in) {
     const Handler run = in.run;
-    return !is_undefined(opcode) && run != ops::illegal && run != ops::erased && run != ops::sleep && run != ops::break_ && run != ops::wdr &&
-           run != ops::spm && run != ops::spm_plus && !touches_io(in);
+    return !is_undefined(opcode) && run != ops::illegal && run != ops::erased && run != ops::sleep &&
+           run != ops::break_ && run != ops::wdr && run != ops::spm && run != ops::spm_plus &&
+           !touches_io(in);
 }
 
 // Random state, the same on both sides; pointers lead into SRAM, also after displacement.
@@ -148,10 +155,11 @@ bool agree(Pair& pair, uint64_t start, const char* what, unsigned* reports) {
         return true;
     }
     if ((*reports)++ < kMostReports) {
-        std::printf("%s: pc %05X / %05X, sreg %02X / %02X, cycles %llu / %llu, sp %04X / %04X (ours / simavr)\n", what,
-                    2 * cpu.pc(), avr->pc, cpu.status(), their_status(avr),
-                    static_cast<unsigned long long>(our_cycles), static_cast<unsigned long long>(their_cycles),
-                    cpu.data[0x5D] | cpu.data[0x5E] << 8, their_stack(avr));
+        std::printf(
+            "%s: pc %05X / %05X, sreg %02X / %02X, cycles %llu / %llu, sp %04X / %04X (ours / simavr)\n",
+            what, 2 * cpu.pc(), avr->pc, cpu.status(), their_status(avr),
+            static_cast<unsigned long long>(our_cycles), static_cast<unsigned long long>(their_cycles),
+            cpu.data[0x5D] | cpu.data[0x5E] << 8, their_stack(avr));
         for (unsigned i = 0; i < kDataBytes; i++) {
             if (cpu.data[i] != avr->data[i]) {
                 std::printf("  data %04X: %02X / %02X\n", i, cpu.data[i], avr->data[i]);
@@ -214,8 +222,8 @@ int run_program(const char* path, unsigned long count) {
         const uint64_t before = cpu.cycle;
         pair.ours->step();
         avr->pc = avr_run_one(avr);
-        const bool same = 2 * cpu.pc() == avr->pc && cpu.cycle == avr->cycle && cpu.status() == their_status(avr) &&
-                          std::memcmp(cpu.data, avr->data, 32) == 0;
+        const bool same = 2 * cpu.pc() == avr->pc && cpu.cycle == avr->cycle &&
+                          cpu.status() == their_status(avr) && std::memcmp(cpu.data, avr->data, 32) == 0;
         if (!same || done + 1 == count) {
             char what[64];
             std::snprintf(what, sizeof what, "instruction %lu, after cycle %llu", done,
@@ -225,8 +233,8 @@ int run_program(const char* path, unsigned long count) {
             }
         }
     }
-    std::printf("%lu instructions, %llu cycles, %u disagree\n", done, static_cast<unsigned long long>(cpu.cycle),
-                reports);
+    std::printf("%lu instructions, %llu cycles, %u disagree\n", done,
+                static_cast<unsigned long long>(cpu.cycle), reports);
     return reports == 0 ? 0 : 1;
 }
 
@@ -234,7 +242,8 @@ int run_program(const char* path, unsigned long count) {
 
 int main(int argc, char** argv) {
     if (argc == 4 && std::strcmp(argv[1], "random") == 0) {
-        return run_random(static_cast<unsigned>(std::atoi(argv[2])), static_cast<unsigned>(std::atoi(argv[3])));
+        return run_random(static_cast<unsigned>(std::atoi(argv[2])),
+                          static_cast<unsigned>(std::atoi(argv[3])));
     }
     if (argc == 4 && std::strcmp(argv[1], "program") == 0) {
         return run_program(argv[2], std::strtoul(argv[3], nullptr, 10));

@@ -1,9 +1,10 @@
 """Many tiles: lockstep, cables, switching on, and the same results whatever the slicing."""
 
 from conftest import Compile
+
 from tilenca.emulator import EAST, WEST, Array, EmulatedTile
 
-# Passes on what comes from the west, plus one, to the east; the first tile of a row starts. Shows the low bits.
+# Passes on what comes from the west, plus one, to the east; the first tile of a row starts it.
 BUCKET_BRIGADE = """
 ISR(USART3_RX_vect) {
     uint8_t c = UDR3;
@@ -40,7 +41,9 @@ def test_bytes_pass_through_a_row_of_tiles(avr: Compile) -> None:
     array.run(0.2)
     counts = [tile.read_memory(0x1000, 1)[0] for tile in array]
     assert counts[0] == 0
-    assert all(count >= 240 for count in counts[1:])  # of 257, less what was sent before they were switched on
+    assert all(
+        count >= 240 for count in counts[1:]
+    )  # of 257, less what was sent before they were switched on
 
 
 def test_results_do_not_depend_on_how_time_is_sliced(avr: Compile) -> None:
@@ -61,7 +64,9 @@ def test_the_same_calls_give_the_same_bytes(avr: Compile) -> None:
 
 
 def test_clocks_and_switch_on_times_are_the_tiles_own(avr: Compile) -> None:
-    with Array(avr("int main(void) { for (;;) { } }"), 3, ppm=[0, 3000, -3000], switch_on_s=[0, 0.25, 2]) as array:
+    with Array(
+        avr("int main(void) { for (;;) { } }"), 3, ppm=[0, 3000, -3000], switch_on_s=[0, 0.25, 2]
+    ) as array:
         array.run(1.0)
         cycles = [tile.cycles[0] for tile in array]
     assert abs(cycles[0] - 16_000_000) < 10

@@ -2,6 +2,7 @@
 
 import pytest
 from conftest import Compile, words
+
 from tilenca.emulator import Array
 from tilenca.errors import TilencaError
 
@@ -32,7 +33,9 @@ def test_an_eeprom_write_takes_its_time_and_lasts(avr: Compile) -> None:
 
 
 def test_a_reset_while_the_eeprom_writes_loses_nothing(avr: Compile) -> None:
-    array = Array(avr("int main(void) { if (eeprom_read_byte(0) == 0xFF) eeprom_write_byte(0, 3); for (;;) { } }"))
+    array = Array(
+        avr("int main(void) { if (eeprom_read_byte(0) == 0xFF) eeprom_write_byte(0, 3); for (;;) { } }")
+    )
     array.run(0.001)
     array[0].reset()
     array.run(0.01)
@@ -68,11 +71,16 @@ def test_the_adc_converts_every_channel_in_its_time(avr: Compile) -> None:
     [
         ('asm volatile(".word 0xFF0F");', "in main: illegal instruction"),
         ('asm volatile("jmp 0x20000");', "ran into erased flash"),
-        ('asm volatile("ldi r30, 0\\n out 0x3C, r30\\n ldi r31, 0x80\\n ijmp" ::: "r30", "r31");', "ran into erased"),
+        (
+            'asm volatile("ldi r30, 0\\n out 0x3C, r30\\n ldi r31, 0x80\\n ijmp" ::: "r30", "r31");',
+            "ran into erased",
+        ),
         ('EIND = 3; asm volatile("eijmp");', "ran off the end of flash"),
     ],
 )
-def test_a_program_that_leaves_the_road_stops_with_tile_place_and_fact(avr: Compile, source: str, fact: str) -> None:
+def test_a_program_that_leaves_the_road_stops_with_tile_place_and_fact(
+    avr: Compile, source: str, fact: str
+) -> None:
     elf = avr(f"int main(void) {{ {source} for (;;) {{ }} }}")
     array = Array(elf, tiles=2, switch_on_s=[0.5, 0.0])
     with pytest.raises(TilencaError, match=r"tile 2 stopped at 0x[0-9A-F]{5}.*" + fact):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from conftest import Compile, run_tool
+
 from tilenca.emulator import Array
 from tilenca.errors import BuildError, UsageError
 
@@ -29,7 +30,9 @@ def refused(path: Path, content: bytes) -> str:
     with pytest.raises(BuildError) as caught:
         Array(path)
     message = str(caught.value)
-    assert message.startswith(str(path)) and ";" in message and "\n" not in message
+    assert message.startswith(str(path))
+    assert ";" in message
+    assert "\n" not in message
     return message
 
 
@@ -57,7 +60,9 @@ def test_an_object_file_is_no_program(avr: Compile, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["elf", "hex"])
-def test_damaged_images_are_refused_or_loaded_but_never_crash(avr: Compile, tmp_path: Path, kind: str) -> None:
+def test_damaged_images_are_refused_or_loaded_but_never_crash(
+    avr: Compile, tmp_path: Path, kind: str
+) -> None:
     draw = random.Random(7)
     elf, victim = avr(PROGRAM, "-g"), tmp_path / "victim"
     good = elf.read_bytes()
@@ -76,9 +81,9 @@ def test_damaged_images_are_refused_or_loaded_but_never_crash(avr: Compile, tmp_
             with Array(victim):
                 outcomes.add("loaded")
         except BuildError as error:
-            assert "\n" not in str(error)
-            outcomes.add("refused")
-    assert outcomes == {"loaded", "refused"} if kind == "elf" else "refused" in outcomes
+            outcomes.add("refused in one line" if "\n" not in str(error) else str(error))
+    # Every record of a HEX file has its checksum; most bytes of an ELF file are not checked by anything.
+    assert outcomes == ({"loaded", "refused in one line"} if kind == "elf" else {"refused in one line"})
 
 
 def test_arguments_that_do_not_fit_are_refused(avr: Compile) -> None:

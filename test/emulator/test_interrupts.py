@@ -2,6 +2,7 @@
 
 import pytest
 from conftest import Compile, words
+
 from tilenca.emulator import Array, EmulatedTile
 
 
@@ -29,8 +30,7 @@ def test_entry_takes_five_cycles_and_the_instruction_after_sei_runs_first(avr: C
     }"""
     memory = run(avr(source), 0.002).read_memory(0x1000, 4)  # before the timer overflows again
     assert memory[0] == 2
-    # Counted from the write of TCNT1L in the last cycle of its STS: SEI and LDI 2, entry 5, JMP 3, LDS reads in its 2nd
-    # cycle.
+    # Counted from the write of TCNT1L in the last cycle of its STS: SEI and LDI 2, entry 5, JMP 3, LDS 2.
     assert words(memory[2:]) == [2 + 5 + 3 + 2]
 
 
@@ -42,7 +42,7 @@ def test_after_reti_one_instruction_runs_before_the_next_interrupt(avr: Compile)
         result[0] = 0;
         EICRA = 0; EIMSK = 1; DDRD = 1;     /* PD0 driven low by ourselves */
         asm volatile("clr r24\\n sei\\n"
-                     "1: inc r24\\n inc r24\\n inc r24\\n inc r24\\n inc r24\\n inc r24\\n inc r24\\n inc r24\\n"
+                     "1: .rept 8\\n inc r24\\n .endr\\n"
                      "lds r25, 0x1000\\n cpi r25, 100\\n brne 1b\\n sts 0x1001, r24\\n" ::: "r24", "r25");
         for (;;) { }
     }"""

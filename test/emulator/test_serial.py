@@ -1,7 +1,10 @@
 """USARTs and the software side of the south link: timing, buffers, errors, waveforms."""
 
+from itertools import pairwise
+
 import pytest
 from conftest import Compile, words
+
 from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
 
 SERIAL = """
@@ -12,17 +15,21 @@ U2X_115200 = 16  # 117,647 baud: 2.1 % fast, as on every Arduino Mega
 
 
 def test_bytes_follow_each_other_without_a_gap(avr: Compile) -> None:
-    elf = avr(SERIAL + "int main(void) { open0(16); for (uint8_t i = 0; i < 200; i++) put0(i); for (;;) { } }")
+    elf = avr(
+        SERIAL + "int main(void) { open0(16); for (uint8_t i = 0; i < 200; i++) put0(i); for (;;) { } }"
+    )
     array = Array(elf)
     array.run(0.1)
     received = array[0].read_serial_timed()
     assert bytes(value for _, value in received) == bytes(range(200))
-    gaps = [(b - a) * 16e6 for (a, _), (b, _) in zip(received, received[1:], strict=False)]
+    gaps = [(b - a) * 16e6 for (a, _), (b, _) in pairwise(received)]
     assert gaps == pytest.approx([10 * 8 * (U2X_115200 + 1)] * 199, abs=2)
 
 
 def test_the_transmit_flags_tell_of_a_double_buffer(avr: Compile) -> None:
-    source = SERIAL + """
+    source = (
+        SERIAL
+        + """
     int main(void) {
         open0(103); UCSR0A = 0;                      /* 9600 baud: 16,640 cycles a byte */
         TCCR5B = 2;                                  /* counts eighths */
@@ -36,6 +43,7 @@ def test_the_transmit_flags_tell_of_a_double_buffer(avr: Compile) -> None:
         UCSR0A = 0x40; result[6] = UCSR0A;
         for (;;) { }
     }"""
+    )
     array = Array(avr(source))
     array.run(0.01)
     memory = array[0].read_memory(0x1000, 7)
@@ -45,13 +53,16 @@ def test_the_transmit_flags_tell_of_a_double_buffer(avr: Compile) -> None:
 
 
 def test_a_receiver_nobody_reads_keeps_two_bytes_and_the_last_and_says_so(avr: Compile) -> None:
-    source = SERIAL + """
+    source = (
+        SERIAL
+        + """
     int main(void) {
         open0(16);
         _delay_ms(5);
         for (uint8_t i = 0; UCSR0A & 0x80; i++) { result[2 * i] = UCSR0A & 0x1C; result[2 * i + 1] = UDR0; }
         for (;;) { }
     }"""
+    )
     array = Array(avr(source))
     array[0].write_serial(b"abcdef")
     array.run(0.01)
@@ -59,13 +70,16 @@ def test_a_receiver_nobody_reads_keeps_two_bytes_and_the_last_and_says_so(avr: C
 
 
 def test_a_break_is_a_zero_with_a_framing_error(avr: Compile) -> None:
-    source = SERIAL + """
+    source = (
+        SERIAL
+        + """
     int main(void) {
         open0(103);
         while (!(UCSR0A & 0x80)) { }
         result[0] = UCSR0A & 0x1C; result[1] = UDR0;
         for (;;) { }
     }"""
+    )
     array = Array(avr(source))
     array[0].push_edge("E", 0, 10_000, False)
     array[0].push_edge("E", 0, 60_000, True)
@@ -74,7 +88,9 @@ def test_a_break_is_a_zero_with_a_framing_error(avr: Compile) -> None:
 
 
 def test_a_glitch_is_no_start_bit(avr: Compile) -> None:
-    array = Array(avr(SERIAL + "int main(void) { open0(103); _delay_ms(8); result[0] = UCSR0A; for (;;) { } }"))
+    array = Array(
+        avr(SERIAL + "int main(void) { open0(103); _delay_ms(8); result[0] = UCSR0A; for (;;) { } }")
+    )
     array[0].push_edge("E", 0, 10_000, False)
     array[0].push_edge("E", 0, 10_300, True)  # of 832 cycles per bit
     array.run(0.01)
@@ -102,9 +118,11 @@ int main(void) {
 """
 
 
-# The data sheet's limits at double speed, eight data bits, are 96.00 % and 103.90 % of the receiver's rate in the worst
-# phase; 94.7 % and 105.3 % in the best.
-@pytest.mark.parametrize(("rate", "clean"), [(1.0, True), (1.038, True), (1.054, False), (0.961, True), (0.94, False)])
+# The data sheet's limits at double speed and eight data bits: 96.00 % and 103.90 % of the receiver's rate
+# in the worst phase; by its figures 94.7 % and 105.3 % in the best.
+@pytest.mark.parametrize(
+    ("rate", "clean"), [(1.0, True), (1.038, True), (1.054, False), (0.961, True), (0.94, False)]
+)
 def test_hardware_links_tolerate_what_the_chip_tolerates(avr: Compile, rate: float, clean: bool) -> None:
     array = Array(avr(LINK), 2, [(0, EAST, 1, WEST)], ppm=[(rate - 1) * 1e6, 0])
     array[0].write_eeprom(0, b"\x01")
@@ -113,7 +131,7 @@ def test_hardware_links_tolerate_what_the_chip_tolerates(avr: Compile, rate: flo
     assert (count == 250 and wrong == 0) == clean
 
 
-# One tile's SOUTH sends by hand from PK7 at 38,400 baud; the other's NORTH is a USART. The answer comes back on PK6.
+# One tile's SOUTH sends by hand from PK7 at 38,400 baud; the other's NORTH is a USART, and answers to PK6.
 SOUTH_SENDS = """
 #define BIT 416
 static void bit_bang(uint8_t c) {
@@ -160,12 +178,14 @@ def test_the_south_link_carries_real_waveforms_both_ways(avr: Compile, ppm: floa
     assert array[1].read_memory(0x1000, 2) == bytes([0, 0])  # none wrong, 256 right
     assert array[0].read_memory(0x1000 + 100, 1) == bytes([10])  # 0x55: an edge at every bit
     times = words(array[0].read_memory(0x1000, 20))
-    gaps = [(b - a) % 65536 for a, b in zip(times, times[1:], strict=False)]
+    gaps = [(b - a) % 65536 for a, b in pairwise(times)]
     assert gaps == pytest.approx([416 * (1 + 2 * ppm * 1e-6)] * 9, abs=4)  # in the receiver's own cycles
 
 
 def test_an_input_nobody_drives_reads_high(avr: Compile) -> None:
-    source = "int main(void) { result[0] = PINK; result[1] = PINH; PORTK = 0xFF; result[2] = PINK; for (;;) { } }"
+    source = (
+        "int main(void) { result[0] = PINK; result[1] = PINH; PORTK = 0xFF; result[2] = PINK; for (;;) { } }"
+    )
     array = Array(avr(source))
     array.run(0.001)
     assert array[0].read_memory(0x1000, 3) == b"\xff\xff\xff"
@@ -176,5 +196,5 @@ def test_a_reset_cuts_a_frame_off(avr: Compile) -> None:
     array.run(0.0004)
     array[0].reset()
     array.run(0.01)
-    # The start bit and the first zeros, then an idle line: 115,200 baud sees a break, then the frame sent anew.
+    # The start bit and the first zeros, then an idle line: at 115,200 baud a break, then the frame sent anew.
     assert array[0].read_serial()[0] == 0

@@ -1,7 +1,10 @@
 """Timers against the data sheet: periods, flags, PWM duty, to the cycle."""
 
+from itertools import pairwise
+
 import pytest
 from conftest import Compile, words
+
 from tilenca.emulator import Array, EmulatedTile
 
 
@@ -38,7 +41,7 @@ def test_interrupts_come_with_the_mode_s_period(avr: Compile, vector: str, setup
     tile = run(avr(MEASURE.replace("VECTOR", vector).replace("SETUP", setup)))
     times = words(tile.read_memory(0x1000, 8))
     # The program's loop of one two-cycle jump lets the entry vary by a cycle.
-    assert [(b - a) % 65536 for a, b in zip(times, times[1:], strict=False)] == pytest.approx([period] * 3, abs=1)
+    assert [(b - a) % 65536 for a, b in pairwise(times)] == pytest.approx([period] * 3, abs=1)
 
 
 def test_a_free_running_timer_counts_cycles(avr: Compile) -> None:

@@ -5,8 +5,7 @@
 
 namespace tilenca {
 
-Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks)
-    : symbols_(image.symbols) {
+Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks) : image_(image) {
     const auto program = std::make_shared<avr::Program>();
     for (const Block& block : image.flash) {
         program->write(block.address, block.bytes.data(), static_cast<uint32_t>(block.bytes.size()));
@@ -68,15 +67,10 @@ std::string Array::fault(unsigned index) {
         return "";
     }
     const uint32_t address = 2 * cpu.pc();
-    std::string where;
-    for (const Symbol& symbol : symbols_) {
-        if (symbol.address <= address && address < symbol.address + symbol.size) {
-            where = " in " + symbol.name;
-        }
-    }
+    const std::string function = image_.function_at(address);
     char text[64];
     std::snprintf(text, sizeof text, "tile %u stopped at 0x%05X", index + 1, address);
-    return text + where + ": " + cpu.fault;
+    return text + (function.empty() ? "" : " in " + function) + ": " + cpu.fault;
 }
 
 } // namespace tilenca

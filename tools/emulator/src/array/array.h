@@ -50,7 +50,7 @@ class Array {
     void connect(Tile& from, unsigned from_side, Tile& to, unsigned to_side);
     double idle_until();
 
-    std::vector<Symbol> symbols_;
+    Image image_; // for its symbols
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::vector<std::unique_ptr<Wire>> wires_;
     double now_ = 0;

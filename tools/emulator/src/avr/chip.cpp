@@ -82,8 +82,7 @@ void Chip::reset(ResetCause cause) {
     }
 }
 
-// --- the core's bus
-// -------------------------------------------------------------------------------------------
+// --- the core's bus ---
 
 uint8_t Chip::read(uint16_t address, uint64_t cycle) {
     Peripheral* peripheral = at_address_[address];
@@ -194,8 +193,7 @@ void Chip::address_outside_memory(uint16_t address, bool write) {
     (write ? told_write_ : told_read_) = true;
 }
 
-// --- the outside
-// ----------------------------------------------------------------------------------------------
+// --- the outside ---
 
 void Chip::push_edge(PinId pin, uint64_t cycle, bool level) {
     Line& line = *gpio_->line(pin);

@@ -244,8 +244,7 @@ double Timer::duty(PinId pin, uint64_t cycle) {
     return -1;
 }
 
-// --- interrupts
-// -----------------------------------------------------------------------------------------------
+// --- interrupts ---
 
 uint8_t Timer::vector_of(uint8_t flag) const {
     if (flag == kFlagOverflow) {

@@ -139,8 +139,7 @@ void Usart::write_control(uint8_t value, uint64_t cycle) {
     }
 }
 
-// --- transmitter
-// ----------------------------------------------------------------------------------------------
+// --- transmitter ---
 
 void Usart::send(uint8_t data, uint64_t cycle) {
     if ((byte(b()) & kTxen) == 0 || buffer_full_) {
@@ -184,8 +183,7 @@ void Usart::frame_sent(uint64_t cycle) {
     }
 }
 
-// --- receiver
-// -------------------------------------------------------------------------------------------------
+// --- receiver ---
 
 void Usart::await_start(uint64_t from) {
     const Line* line = gpio_.line(receive_pin_);

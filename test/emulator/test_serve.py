@@ -1,0 +1,122 @@
+"""Emulated tiles behind pseudo-terminals: real programs on the other side."""
+
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import Compile, run_tool
+
+from tilenca.emulate_serve import STOCK_BOOTLOADER
+
+TIMEOUT_S = 60.0
+
+ECHO = """
+int main(void) {
+    UBRR0 = 16; UCSR0A = 2; UCSR0B = 0x18;
+    for (const char *text = GREETING; *text; text++) { while (!(UCSR0A & 0x20)) { } UDR0 = *text; }
+    for (;;) { while (!(UCSR0A & 0x80)) { } uint8_t c = UDR0; while (!(UCSR0A & 0x20)) { } UDR0 = c ^ 0x20; }
+}
+"""
+
+
+class Server:
+    def __init__(self, elf: Path, directory: Path, *options: str) -> None:
+        shapes = directory.parent / "pair.toml"
+        shapes.write_text('[[shape]]\nlabel = "1"\ngrid = "##"\n')
+        command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shapes", shapes, "--elf", elf]
+        self.process = subprocess.Popen(
+            [*map(str, command), "--boot-spread", "0", "--serve", str(directory), *options],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        assert self.process.stderr is not None
+        assert "serving 2 tiles" in self.process.stderr.readline()
+
+    def stop(self) -> int:
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(TIMEOUT_S)
+
+
+@pytest.fixture
+def directory(tmp_path: Path) -> Path:
+    return tmp_path / "tiles"
+
+
+@pytest.fixture
+def echo(avr: Compile, directory: Path) -> Iterator[Server]:
+    server = Server(avr(ECHO, '-DGREETING="hello "'), directory)
+    yield server
+    server.stop()
+
+
+def read(port: int, count: int) -> bytes:
+    """Exactly `count` bytes from a port."""
+    data = b""
+    while len(data) < count:
+        ready, _, _ = select.select([port], [], [], TIMEOUT_S)
+        assert ready, f"only {data!r} came"
+        data += os.read(port, count - len(data))
+    return data
+
+
+def test_bytes_pass_both_ways(echo: Server, directory: Path) -> None:
+    assert sorted(path.name for path in directory.iterdir()) == ["tile-01", "tile-02"]
+    for name in ("tile-01", "tile-02"):
+        port = os.open(directory / name, os.O_RDWR | os.O_NOCTTY)
+        assert read(port, 6) == b"hello "  # opening it has reset the tile
+        os.write(port, b"abc")
+        assert read(port, 3) == b"ABC"
+        os.close(port)
+
+
+def test_an_interrupt_leaves_nothing_behind(echo: Server, directory: Path) -> None:
+    assert echo.stop() == 130
+    assert not directory.exists()
+
+
+def test_links_of_a_killed_run_are_replaced_and_other_files_kept(avr: Compile, directory: Path) -> None:
+    directory.mkdir()
+    (directory / "tile-01").symlink_to("/nowhere")
+    (directory / "notes").write_text("mine")
+    server = Server(avr(ECHO, '-DGREETING=""'), directory, "--seconds", "0.2")
+    assert server.process.wait(TIMEOUT_S) == 0
+    assert [path.name for path in directory.iterdir()] == ["notes"]
+
+
+def test_without_resets_a_tile_runs_on(avr: Compile, directory: Path) -> None:
+    server = Server(avr(ECHO, '-DGREETING="hello "'), directory, "--keep-running", "--bootloader", "none")
+    port = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
+    os.write(port, b"abc")
+    answer = read(port, 3)
+    while answer[-3:] != b"ABC":  # the greeting, if the port was open in time for it
+        answer += read(port, 1)
+    os.close(port)
+    port = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
+    os.write(port, b"xyz")
+    assert read(port, 3) == b"XYZ"
+    os.close(port)
+    server.stop()
+
+
+@pytest.mark.skipif(
+    not STOCK_BOOTLOADER.exists(), reason="the stock bootloader is in Debian's arduino-core-avr"
+)
+def test_real_avrdude_programs_a_tile_through_the_stock_bootloader(
+    echo: Server, avr: Compile, directory: Path, tmp_path: Path
+) -> None:
+    assert shutil.which("avrdude"), "avrdude is not installed; run `make setup`"
+    replacement = tmp_path / "replacement.hex"
+    run_tool("avr-objcopy", "-O", "ihex", avr(ECHO, '-DGREETING="programmed "'), replacement)
+    options = ("-p", "atmega2560", "-c", "wiring", "-b", "115200", "-D")
+    run_tool("avrdude", *options, "-P", directory / "tile-02", "-U", f"flash:w:{replacement}:i")
+    greetings = {"tile-01": b"hello ", "tile-02": b"programmed "}
+    for name, greeting in greetings.items():
+        port = os.open(directory / name, os.O_RDWR | os.O_NOCTTY)
+        assert read(port, len(greeting)) == greeting
+        os.close(port)

@@ -1,0 +1,131 @@
+// The interrupts that pins raise: INT0..7, and the three banks of pin changes.
+#include "avr/gpio.h"
+#include "avr/pin_registers.h"
+#include "avr/vectors.h"
+
+#include <algorithm>
+
+namespace tilenca::avr {
+
+namespace {
+
+constexpr uint8_t kPortB = port_index('B'), kPortD = port_index('D'), kPortE = port_index('E');
+constexpr uint8_t kPortJ = port_index('J'), kPortK = port_index('K');
+
+} // namespace
+
+std::vector<uint8_t> Gpio::vectors() const {
+    std::vector<uint8_t> all;
+    for (uint8_t vector = kVectorInt0; vector < kVectorPinChange0 + 3; vector++) {
+        all.push_back(vector);
+    }
+    return all;
+}
+
+void Gpio::interrupt_taken(uint8_t vector) {
+    if (vector < kVectorPinChange0) {
+        byte(kEifr) &= static_cast<uint8_t>(~(1 << (vector - kVectorInt0)));
+    } else {
+        byte(kPcifr) &= static_cast<uint8_t>(~(1 << (vector - kVectorPinChange0)));
+    }
+    update_requests();
+}
+
+// How INT0..7 is triggered: 0 low level, 1 any edge, 2 falling, 3 rising.
+uint8_t Gpio::sense(unsigned number) const {
+    const uint8_t control = byte(number < 4 ? kEicra : kEicrb);
+    return control >> (number % 4 * 2) & 3;
+}
+
+void Gpio::external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift) {
+    for (unsigned i = 0; i < 4; i++) {
+        const bool was = (before >> (i + shift) & 1) != 0, is = (after >> (i + shift) & 1) != 0;
+        const uint8_t how = sense(first + i);
+        if (was != is && (how == 1 || (how == 2 && !is) || (how == 3 && is))) {
+            byte(kEifr) |= static_cast<uint8_t>(1 << (first + i));
+        }
+    }
+}
+
+void Gpio::pin_change(unsigned bank, uint8_t changed) {
+    if ((changed & byte(static_cast<uint16_t>(kPcmsk0 + bank))) != 0) {
+        byte(kPcifr) |= static_cast<uint8_t>(1 << bank);
+    }
+}
+
+void Gpio::pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t) {
+    const auto changed = static_cast<uint8_t>(before ^ after);
+    const auto index = &port - ports_.data();
+    if (index == kPortB) {
+        pin_change(0, changed);
+    } else if (index == kPortE) {
+        pin_change(1, changed & 1);
+        external_interrupts(4, before, after, 4);
+    } else if (index == kPortJ) {
+        pin_change(1, static_cast<uint8_t>(changed << 1));
+    } else if (index == kPortK) {
+        pin_change(2, changed);
+    } else if (index == kPortD) {
+        external_interrupts(0, before, after, 0);
+    } else {
+        return;
+    }
+    update_requests();
+}
+
+void Gpio::update_requests() {
+    const uint8_t flags = byte(kEifr), enabled = byte(kEimsk);
+    for (uint8_t i = 0; i < 8; i++) {
+        const Port& port = ports_[i < 4 ? kPortD : kPortE];
+        const bool low = sense(i) == 0 && (port.levels >> i & 1) == 0; // INT0..3 on PD0..3, INT4..7 on PE4..7
+        core_.cpu.request(kVectorInt0 + i, (enabled >> i & 1) != 0 && (low || (flags >> i & 1) != 0));
+    }
+    for (uint8_t bank = 0; bank < 3; bank++) {
+        const bool asks = (byte(kPcifr) & byte(kPcicr)) >> bank & 1;
+        core_.cpu.request(kVectorPinChange0 + bank, asks);
+    }
+}
+
+// Edges on an input become events only while an interrupt could come of them, or its flag be seen.
+void Gpio::update_watched(uint64_t cycle) {
+    for (Port& port : ports_) {
+        port.watched_in = 0;
+    }
+    ports_[kPortB].watched_in = byte(kPcmsk0);
+    ports_[kPortJ].watched_in = byte(kPcmsk0 + 1) >> 1;
+    ports_[kPortE].watched_in = (byte(kPcmsk0 + 1) & 1) | (byte(kEimsk) & 0xF0);
+    ports_[kPortK].watched_in = byte(kPcmsk0 + 2);
+    ports_[kPortD].watched_in = byte(kEimsk) & 0x0F;
+    for (Port& port : ports_) {
+        port.watched_in &= port.has_lines;
+        if (port.watched_in != 0) {
+            // What happened while nobody watched raises nothing now.
+            port.levels = compute_levels(port, cycle);
+        }
+    }
+    schedule_lines(cycle);
+}
+
+void Gpio::schedule_lines(uint64_t cycle) {
+    uint64_t soonest = kNever;
+    for (Port& port : ports_) {
+        for (unsigned bit = 0; port.watched_in >> bit != 0; bit++) {
+            if ((port.watched_in >> bit & 1) != 0) {
+                const Line::Edge* edge = port.lines[bit]->next_after(cycle);
+                soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
+            }
+        }
+    }
+    core_.schedule.set(Slot::Lines, soonest);
+}
+
+void Gpio::on_event(Slot, uint64_t cycle) {
+    for (Port& port : ports_) {
+        if (port.watched_in != 0) {
+            update(port, cycle);
+        }
+    }
+    schedule_lines(cycle);
+}
+
+} // namespace tilenca::avr
