@@ -7,10 +7,7 @@ ENV     := megaatmega2560
 ELF     := .pio/build/$(ENV)/firmware.elf
 
 # C++ that is written by hand; what `tilenca export` generates has its own check.
-CPP := $(wildcard firmware/include/[abc]*/*.h firmware/src/*.cpp firmware/src/[abc]*/*.cpp \
-	test/firmware/*.h test/firmware/*/*.cpp test/firmware/*/*.h \
-	test/emulator/*.cpp test/emulator/*.h \
-	tools/emulator/*.cpp tools/emulator/*.h tools/emulator/*/*.cpp tools/emulator/*/*.h tools/simulator/*.cpp)
+CPP = $(shell find firmware tools test '(' -name '*.h' -o -name '*.cpp' ')' -not -path '*/model/*' -not -path 'test/vectors/*')
 
 # Buffers are left uninitialised on purpose; the other suppression is for a false alarm on nested `?:`.
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \
@@ -77,5 +74,5 @@ bench: setup-demo ## print exact sizes of the firmware and the speed of the emul
 	@$(PYTHON) tools/bench.py $(ELF)
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/emulator build/simulator build/models
+	@rm -rf .pio build/emulator build/simulator build/strict build/models
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

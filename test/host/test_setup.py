@@ -70,10 +70,10 @@ def test_the_installed_version_is_the_one_python_would_import(tmp_path: Path) ->
     assert python.installed_version("platformio", tmp_path) is None
 
 
-def make_environment_at(venv: Path, first_line: str) -> Path:
+def make_environment_at(venv: Path, head: str) -> Path:
     (venv / "bin").mkdir(parents=True)
     (venv / "bin" / "python").symlink_to(sys.executable)
-    (venv / "bin" / "pip").write_text(first_line + "\n", encoding="utf-8")
+    (venv / "bin" / "pip").write_text(head + "\n", encoding="utf-8")
     return venv
 
 
@@ -81,6 +81,14 @@ def test_an_environment_that_was_moved_is_not_used(tmp_path: Path) -> None:
     here = tmp_path / "here"
     assert python.belongs_here(make_environment_at(here, f"#!{here}/bin/python"))
     assert not python.belongs_here(make_environment_at(tmp_path / "moved", f"#!{here}/bin/python"))
+
+
+def test_an_environment_at_a_long_path_is_known_too(tmp_path: Path) -> None:
+    # What pip writes where the path does not fit into a `#!` line: a shell script that is Python as well.
+    venv = tmp_path / ("deep" * 40)
+    assert python.belongs_here(
+        make_environment_at(venv, f"#!/bin/sh\n'''exec' {venv}/bin/python \"$0\"\n' '''")
+    )
 
 
 def test_an_environment_without_its_interpreter_is_not_used(tmp_path: Path) -> None:

@@ -63,11 +63,12 @@ def _make_venv() -> None:
 def belongs_here(venv: Path) -> bool:
     """Whether the environment works and was made at this place: its programs hold their own full path."""
     try:
-        first_line = (venv / "bin" / "pip").read_text(encoding="utf-8").splitlines()[0]
+        # One line, or three where the path is too long for one.
+        head = "".join((venv / "bin" / "pip").read_text(encoding="utf-8").splitlines()[:3])
         works = subprocess.run([venv / "bin" / "python", "-c", ""], stdin=subprocess.DEVNULL, check=False)
-    except (OSError, UnicodeDecodeError, IndexError):
+    except (OSError, UnicodeDecodeError):
         return False
-    return works.returncode == 0 and str(venv) in first_line
+    return works.returncode == 0 and f"{venv}/bin/python" in head
 
 
 def _install_level(level: str, project: dict[str, dict[str, list[str]]]) -> None:
