@@ -8,7 +8,7 @@ import os
 import selectors
 import subprocess
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -20,6 +20,10 @@ from tilenca.ports import denial, is_device
 
 # How often to see whether a silent board is still there: avrdude does not notice for long.
 LOOK_AROUND_S = 0.5
+
+# A bootloader listens only for a second or two after the reset that opening the port causes; on a busy
+# machine avrdude can come too late. Opening the port again resets the board again.
+ATTEMPTS = 2
 
 
 @dataclass(frozen=True)
@@ -135,6 +139,7 @@ class _Fleet:
         self.runs: dict[str, tuple[Run, ExitStack]] = {}
         self._tool, self._image, self._timeout_s, self._report = tool, image, timeout_s, report
         self._selector = selectors.DefaultSelector()
+        self._attempts: Counter[str] = Counter()
 
     def start(self, name: str) -> None:
         """Starts on a board, unless it is plain that it would fail."""
@@ -148,6 +153,7 @@ class _Fleet:
             lock.close()
             self._done(Outcome(name, "failed", 0.0, problem))
             return
+        self._attempts[name] += 1
         run = Run(self._tool, self._image, name, descriptor)
         self.runs[name] = run, lock
         self._selector.register(run.stream, selectors.EVENT_READ, run)
@@ -170,8 +176,12 @@ class _Fleet:
             self._report(run.port, run.output.progress)
             return
         self._selector.unregister(run.stream)
-        self._done(run.finish())
+        outcome = run.finish()
         self.runs.pop(run.port)[1].close()
+        if outcome.error == NO_REPLY and self._attempts[run.port] < ATTEMPTS:
+            self.start(run.port)
+        else:
+            self._done(outcome)
 
     def _done(self, outcome: Outcome) -> None:
         self.outcomes[outcome.port] = outcome

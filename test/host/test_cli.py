@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from tilenca import paths
 from tilenca.cli import COMMANDS, main
 

@@ -26,7 +26,7 @@ TRIED: dict[str, tuple[list[str], int]] = {
     "python host/flash_all.py": (["--no-build", "--port", "none-*"], 3),
     "python host/monitor.py": (["--port", "none-*"], 3),
 }
-# Tried elsewhere (serving and monitoring in test_monitor.py, `pio run` by the set-up) or only a change of environment.
+# Tried elsewhere (serving and monitoring in test_served_tiles.py, `pio run` by the set-up).
 ELSEWHERE = {
     ". .venv/bin/activate",
     "pio run",
@@ -52,6 +52,7 @@ def reader(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (drawing,) = re.findall(r"^```toml\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
     (directory / "my-shapes.toml").write_text(drawing, encoding="utf-8")
     (directory / "host").symlink_to(paths.ROOT / "host")
+    (directory / "firmware-mine").mkdir()
     (directory / "Makefile").symlink_to(paths.ROOT / "Makefile")
     return directory
 

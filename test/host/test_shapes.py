@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from tilenca import paths
 from tilenca.errors import UsageError
 from tilenca.shapes import connected, load_task
