@@ -81,7 +81,7 @@ class Model:
         directory.mkdir(parents=True, exist_ok=True)
         arrays = {name: self.floats[name] for name in self.dimensions.shapes()}
         arrays |= {f"int_{name}": self.integer[name] for name in self.dimensions.shapes()}
-        np.savez(directory / "weights.npz", **arrays)
+        np.savez(directory / "weights.npz", **arrays)  # type: ignore[arg-type]
         about = {
             "format": FORMAT,
             "model_id": f"{self.model_id:04X}",
@@ -103,7 +103,7 @@ def load_model(directory: Path) -> Model:
         about = json.loads(about_path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(
-            f"{about_path}: {error.strerror}; give a directory that `tilenca train` wrote, such as models/digits"
+            f"{about_path}: {error.strerror}; give a directory that `tilenca train` wrote, like models/digits"
         ) from error
     except ValueError as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
@@ -121,13 +121,14 @@ def load_model(directory: Path) -> Model:
 
 
 def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[str, ...]]:
-    widths = [about.get(key) for key in ("channels", "hidden1", "hidden2")]
+    widths: list[Any] = [about.get(key) for key in ("channels", "hidden1", "hidden2")]
     if (
         not all(type(width) is int and 1 <= width <= MAX_WIDTH for width in widths)
         or widths[0] > MAX_CHANNELS
     ):
         raise UsageError(
-            f"{path}: channels, hidden1, hidden2 are {widths}; the most are {MAX_CHANNELS}, {MAX_WIDTH}, {MAX_WIDTH}"
+            f"{path}: channels, hidden1, hidden2 are {widths}; "
+            f"the most are {MAX_CHANNELS}, {MAX_WIDTH} and {MAX_WIDTH}"
         )
     dimensions = Dimensions(*widths)
     labels = about.get("labels")

@@ -1,0 +1,160 @@
+"""The drawings of one or more shape files as arrays: what training and simulation compute on.
+
+Only real tiles are computed. A batch of any drawings is one flat list of cells with a table of neighbours in
+which "no neighbour" is an index one past the last cell, where callers keep a row of zeros. numpy only.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.errors import UsageError
+from tilenca.shapes import SIDES, Shape, load_task
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """A flat batch of drawings, one after the other.
+
+    Attributes:
+        neighbours: (N, 4) int64, indices of the N, E, S, W neighbour among the batch's cells, N for none.
+        sample: (N,) int64, which drawing of the batch a cell belongs to, ascending.
+        target: (N,) int64, class of the cell's drawing.
+        place: (N,) int64, the cell's number within its drawing.
+        starts: (B,) int64, index of each drawing's first cell.
+    """
+
+    neighbours: Indices
+    sample: Indices
+    target: Indices
+    place: Indices
+    starts: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Drawings:
+    """All drawings of a task, from one or more files.
+
+    Attributes:
+        shapes: the drawings in the order of the files.
+        groups: for each drawing the number of the file it came from; one file holds drawings of one scale.
+        labels: the classes; class k is `labels[k]`.
+        sources: `{"file", "sha256"}` of every file.
+    """
+
+    shapes: tuple[Shape, ...]
+    groups: tuple[int, ...]
+    labels: tuple[str, ...]
+    sources: tuple[dict[str, str], ...]
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+    @cached_property
+    def sizes(self) -> Indices:
+        """(S,) number of tiles of each drawing."""
+        return np.array([len(shape.cells) for shape in self.shapes], dtype=np.int64)
+
+    @cached_property
+    def classes(self) -> Indices:
+        """(S,) class of each drawing."""
+        return np.array([self.labels.index(shape.label) for shape in self.shapes], dtype=np.int64)
+
+    @cached_property
+    def tables(self) -> Indices:
+        """(S, M, 4) neighbour of each cell within its drawing, -1 for none; M is the largest size."""
+        tables = np.full((len(self), int(self.sizes.max()), len(SIDES)), -1, dtype=np.int64)
+        for number, shape in enumerate(self.shapes):
+            tables[number, : self.sizes[number]] = shape.neighbours()
+        return tables
+
+    def batch(self, chosen: Indices) -> Batch:
+        """Lays drawings out as one flat list of cells.
+
+        Args:
+            chosen: (B,) numbers of drawings, repeats allowed.
+        """
+        sizes = self.sizes[chosen]
+        starts = np.concatenate(([0], np.cumsum(sizes)[:-1]))
+        sample = np.repeat(np.arange(len(chosen)), sizes)
+        place = np.arange(int(sizes.sum())) - starts[sample]
+        inside = self.tables[chosen[sample], place]
+        neighbours = np.where(inside >= 0, inside + starts[sample][:, None], len(sample))
+        return Batch(neighbours, sample, self.classes[chosen][sample], place, starts)
+
+    def overlap(self, old: int, new: int, random: np.random.Generator) -> Indices:
+        """Where the tiles of drawing `new` stand on those of `old`, when one is rebuilt into the other.
+
+        The two are laid on each other so that the smaller bounding box lies inside the larger, at a random
+        place (a narrow "1" may stand on any column of a "4").
+
+        Returns:
+            (cells of new,) int64, index of the cell of `old` at the same place, -1 for a tile put down anew.
+        """
+        shift = []
+        for axis in (0, 1):
+            room = self._extent(old)[axis] - self._extent(new)[axis]
+            shift.append(int(random.integers(min(room, 0), max(room, 0) + 1)))
+        return self._overlap(old, new, shift[0], shift[1])
+
+    def _extent(self, number: int) -> tuple[int, int]:
+        rows = self.shapes[number].rows
+        return len(rows), len(rows[0])
+
+    @lru_cache(maxsize=4096)  # noqa: B019 - lives as long as the process, like the drawings
+    def _overlap(self, old: int, new: int, down: int, right: int) -> Indices:
+        index = {cell: place for place, cell in enumerate(self.shapes[old].cells)}
+        cells = self.shapes[new].cells
+        return np.array([index.get((row + down, col + right), -1) for row, col in cells], dtype=np.int64)
+
+
+def load_drawings(
+    paths: Sequence[Path], max_classes: int | None = None, labels: Sequence[str] | None = None
+) -> Drawings:
+    """Reads shape files that form one task together, by label.
+
+    Args:
+        paths: the files; each holds drawings of one scale.
+        max_classes: how many classes the model's state has room for; None: not checked.
+        labels: a model's classes, which then are the task's; None: the labels in order of first appearance.
+
+    Raises:
+        UsageError: a file is not valid, two files contradict each other, or a label is not among `labels`.
+    """
+    shapes: list[Shape] = []
+    groups: list[int] = []
+    found: dict[str, None] = {}
+    for group, path in enumerate(paths):
+        task = load_task(path, max_classes)
+        for shape in task.shapes:
+            twin = next((n for n, other in enumerate(shapes) if other.rows == shape.rows), None)
+            if twin is not None and shapes[twin].label != shape.label:
+                raise UsageError(
+                    f"{path}: '{shape.name}' is drawn exactly like '{shapes[twin].name}' of "
+                    f"{paths[groups[twin]]}; remove or redraw one"
+                )
+            if labels is not None and shape.label not in labels:
+                raise UsageError(
+                    f"{path}: the model does not know '{shape.label}'; it knows: {' '.join(labels)}; "
+                    "train one on this file with `tilenca train`"
+                )
+            found.setdefault(shape.label)
+            if twin is None:  # the same drawing of the same label in two files is one drawing
+                shapes.append(shape)
+                groups.append(group)
+        if max_classes is not None and len(found) > max_classes:
+            raise UsageError(
+                f"{path}: {len(found)} classes in all files, but the model's state has room for "
+                f"{max_classes}; give fewer files or train with a wider --state"
+            )
+    sources = tuple(
+        {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()} for path in paths
+    )
+    return Drawings(tuple(shapes), tuple(groups), tuple(found) if labels is None else tuple(labels), sources)

@@ -1,0 +1,208 @@
+"""`tilenca evaluate`: how well a model does on shapes."""
+
+import argparse
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from tilenca import paths
+from tilenca.drawings import Drawings, load_drawings
+from tilenca.errors import BuildError, UsageError
+from tilenca.modelfile import Model, load_model
+from tilenca.shapes import load_task
+from tilenca.simulate import Conditions, Engine, FastEngine, Simulator
+from tilenca.validation import SETTLED, settle_times
+
+RUNS = {"fast": 100, "float": 100, "emulator": 1}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was measured, one entry per run.
+
+    Attributes:
+        chosen: (R,) the drawing.
+        right: (R,) share of tiles that show the right class at the end.
+        settled: (R,) step from which all were right to the end; infinite for none.
+        lapsed: (R,) whether a tile was wrong after step 60, in runs longer than that.
+    """
+
+    chosen: NDArray[np.int64]
+    right: NDArray[np.float32]
+    settled: NDArray[np.float64]
+    lapsed: NDArray[np.bool_]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    parser.add_argument(
+        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="models/digits"
+    )
+    parser.add_argument(
+        "--shapes", type=Path, nargs="+", default=[paths.DEFAULT_SHAPES], metavar="F", help="shape files"
+    )
+    parser.add_argument(
+        "--engine",
+        choices=tuple(RUNS),
+        default="fast",
+        help="fast: the firmware's core on this machine; float: the PyTorch model; emulator: the ELF",
+    )
+    parser.add_argument(
+        "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles'"
+    )
+    parser.add_argument(
+        "--steps", type=int, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
+    )
+    parser.add_argument("--runs", type=int, metavar="N", help="runs per drawing (100; emulator: 1)")
+    parser.add_argument("--loss", type=float, default=0.0, metavar="P", help="share of messages lost, 0..1")
+    parser.add_argument(
+        "--lost",
+        choices=("held", "zero"),
+        default="held",
+        help="a lost message reads as the last one, or as zero",
+    )
+    parser.add_argument(
+        "--dead", type=float, default=0.0, metavar="P", help="share of tiles that are dead, 0..1"
+    )
+    parser.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="same seed, same numbers (default 1)"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measures and prints."""
+    runs = RUNS[args.engine] if args.runs is None else args.runs
+    _check(args, runs)
+    model = load_model(args.model)
+    drawings = load_drawings(args.shapes, labels=model.labels)
+    chosen = np.repeat(np.arange(len(drawings)), runs)
+    if args.engine == "emulator":
+        outcome = _emulate(args, model, drawings, chosen)
+    else:
+        conditions = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
+        random = np.random.default_rng(args.seed)
+        course = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random).run(args.steps)
+        lapsed = ~course.agreed[SETTLED - 1 :].all(axis=0) & (args.steps > SETTLED)
+        outcome = Outcome(chosen, course.right[-1], course.settled, lapsed)
+    report = _report(args, model, drawings, runs, outcome)
+    if args.json:
+        print(json.dumps(report))
+    else:
+        _print(report)
+    return 0
+
+
+def _check(args: argparse.Namespace, runs: int) -> None:
+    if args.steps < 1 or runs < 1 or args.seed < 0:
+        raise UsageError("--steps and --runs must be at least 1, --seed at least 0")
+    for option in ("loss", "dead"):
+        if not 0 <= getattr(args, option) <= 1:
+            raise UsageError(f"--{option} {getattr(args, option)}: a share is 0 to 1")
+
+
+def _engine(name: str, model: Model) -> Engine:
+    if name == "fast":
+        return FastEngine(model)
+    try:
+        from tilenca.tensors import FloatEngine
+    except ImportError as error:
+        raise UsageError(
+            "--engine float needs PyTorch; use --engine fast, or run: pip install 'tilenca[train]'"
+        ) from error
+    return FloatEngine(model)
+
+
+def _emulate(
+    args: argparse.Namespace, model: Model, drawings: Drawings, chosen: NDArray[np.int64]
+) -> Outcome:
+    from tilenca.emulation import Conditions as Powering
+    from tilenca.emulation import Emulation, firmware_settings
+    from tilenca.protocol import HelloSentence
+
+    if args.schedule != "clock" or args.loss or args.dead:
+        raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
+    if not paths.FIRMWARE_ELF.exists():
+        raise BuildError(f"{paths.FIRMWARE_ELF}: no firmware image; run `make demo` or `pio run`")
+    tasks = [load_task(path) for path in args.shapes]
+    defaults = firmware_settings(paths.FIRMWARE_ELF)
+    right, settled = [], []
+    for run, number in enumerate(chosen):
+        shape = drawings.shapes[number]
+        powering = Powering(updates=args.steps, seed=args.seed * 1000 + run)
+        tissue = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, powering, defaults)
+
+        def check(_: Emulation, heard: list[Any]) -> None:
+            for line in heard:
+                if isinstance(line.sentence, HelloSentence) and line.sentence.model_id != model.model_id:
+                    raise BuildError(
+                        f"{paths.FIRMWARE_ELF}: carries model {line.sentence.model_id:04X}, not "
+                        f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
+                    )
+
+        tissue.run(check)
+        right.append(sum(tissue.shown(tile) == shape.label for tile in tissue.array) / len(shape.cells))
+        updates = tissue.agreed_at_update()
+        settled.append(math.inf if updates is None else max(updates, 1))
+    return Outcome(chosen, np.array(right, np.float32), np.array(settled), np.zeros(len(chosen), np.bool_))
+
+
+def _report(
+    args: argparse.Namespace, model: Model, drawings: Drawings, runs: int, outcome: Outcome
+) -> dict[str, Any]:
+    agreed = outcome.right >= 1.0
+    per_shape = []
+    for number, shape in enumerate(drawings.shapes):
+        mine = outcome.chosen == number
+        per_shape.append(
+            {
+                "label": shape.label,
+                "name": shape.name,
+                "file": drawings.sources[drawings.groups[number]]["file"],
+                "grid": shape.grid,
+                "cells_right": round(float(outcome.right[mine].mean()), 6),
+                "total_agreement": round(float(agreed[mine].mean()), 6),
+                "steps_to_agreement": settle_times(outcome.settled[mine]),
+            }
+        )
+    return {
+        "model": f"{model.model_id:04X}",
+        "engine": args.engine,
+        "schedule": args.schedule,
+        "steps": args.steps,
+        "runs": runs,
+        "cells_right": round(float(outcome.right.mean()), 6),
+        "total_agreement": round(float(agreed.mean()), 6),
+        "steps_to_agreement": settle_times(outcome.settled),
+        "runs_with_a_lapse": int(outcome.lapsed.sum()),
+        "per_shape": per_shape,
+    }
+
+
+def _print(report: dict[str, Any]) -> None:
+    def times(settle: dict[str, float | None]) -> list[str]:
+        return ["never" if value is None else f"{value:.0f}" for value in settle.values()]
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("shape", "file", "cells right", "all right", "median", "95 %"):
+        table.add_column(heading, justify="left" if heading in ("shape", "file") else "right")
+    for row in report["per_shape"]:
+        shares = f"{row['cells_right']:.4f}", f"{row['total_agreement']:.4f}"
+        table.add_row(row["name"], row["file"], *shares, *times(row["steps_to_agreement"]))
+    table.add_section()
+    shares = f"{report['cells_right']:.4f}", f"{report['total_agreement']:.4f}"
+    table.add_row("all", "", *shares, *times(report["steps_to_agreement"]))
+    print(
+        f"model {report['model']}, engine {report['engine']}, schedule {report['schedule']}: after "
+        f"{report['steps']} steps, {report['runs']} runs per shape; median and 95 %: steps until all tiles "
+        "are right and stay so"
+    )
+    Console(highlight=False).print(table)

@@ -1,0 +1,191 @@
+"""The training loop: draw tissues, let them live for some rounds, and pull every cell towards its class.
+
+Reads top to bottom: `Trainer.step` is one optimiser step. Everything random comes from one numpy generator,
+whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
+"""
+
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from tilenca.drawings import Batch, Drawings
+from tilenca.errors import TilencaError, UsageError
+from tilenca.model import TileNet, initial_arrays
+from tilenca.modelfile import Dimensions
+from tilenca.pool import Pools
+from tilenca.recipes import Recipe
+from tilenca.rollout import live
+from tilenca.schedule import draw_schedule
+
+HISTORY_EVERY = 50  # iterations that one row of the history averages
+
+
+@dataclass(frozen=True)
+class Config:
+    """Everything that decides the trained weights."""
+
+    recipe: Recipe
+    dimensions: Dimensions
+    seed: int
+    labels: tuple[str, ...]
+    sources: tuple[dict[str, str], ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values, as JSON reads them back; without what does not touch the weights."""
+        recipe = {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self.recipe).items()}
+        del recipe["validation_runs"]
+        return {
+            "recipe": recipe,
+            "dimensions": asdict(self.dimensions),
+            "seed": self.seed,
+            "labels": list(self.labels),
+            "sources": list(self.sources),
+        }
+
+
+@dataclass(frozen=True)
+class StepReport:
+    """What one optimiser step saw: mean squared error per cell, share of samples with every cell right."""
+
+    iteration: int
+    loss: float
+    agreement: float
+
+
+class Trainer:
+    """A training run between two optimiser steps.
+
+    Args:
+        config: what to train.
+        drawings: the task; must be the one `config` names.
+        device: where the tensors live.
+    """
+
+    def __init__(self, config: Config, drawings: Drawings, device: torch.device) -> None:
+        self.config = config
+        self.drawings = drawings
+        self.device = device
+        self.random = np.random.default_rng(config.seed)
+        self.net = TileNet(
+            config.dimensions, config.recipe.bounded, initial_arrays(config.dimensions, self.random)
+        ).to(device)
+        self.optimizer = torch.optim.Adam(self.net.parameters(), lr=config.recipe.learning_rate)
+        self.pools = Pools(config.recipe, drawings, config.dimensions.channels, self.random)
+        self.iteration = 0
+        self.history: list[tuple[int, float, float]] = []  # iteration, and means since the row before
+        self._since: list[tuple[float, float]] = []
+
+    def recent(self) -> tuple[float, float]:
+        """Mean loss and agreement of the last iterations, for the eye."""
+        if not self._since:
+            return self.history[-1][1:] if self.history else (math.nan, math.nan)
+        losses, agreements = zip(*self._since, strict=True)
+        return sum(losses) / len(losses), sum(agreements) / len(agreements)
+
+    def step(self) -> StepReport:
+        """One optimiser step.
+
+        Raises:
+            TilencaError: the loss is not a number any more.
+        """
+        recipe = self.config.recipe
+        taken = self.pools.take()
+        batch = taken.batch
+        rounds = int(self.random.integers(recipe.rounds[0], recipe.rounds[1] + 1))
+        schedule = draw_schedule(recipe, batch, rounds, self.random, taken.late)
+
+        start = torch.from_numpy(taken.states).to(self.device)
+        end = live(self.net, start * self.net.units, schedule) / self.net.units
+        target = torch.from_numpy(batch.target).to(self.device)
+        scores = end[:, -len(self.config.labels) :]
+        wanted = torch.nn.functional.one_hot(target, scores.shape[1]).to(scores.dtype)
+        counts = torch.from_numpy(~taken.late[batch.sample]).to(self.device)
+        loss = ((scores - wanted).square().sum(dim=1) * counts).mean()
+        if recipe.quiet_penalty > 0:
+            # Only where all is well: a settled wrong answer must stay free to change.
+            still = torch.from_numpy(taken.settled[batch.sample]).to(self.device)
+            still &= scores.argmax(dim=1) == target
+            loss = loss + recipe.quiet_penalty * ((end - start).square().sum(dim=1) * still).mean()
+
+        self._descend(loss)
+        self.pools.give_back(batch, end.detach().cpu().numpy(), rounds)
+        self.iteration += 1
+        report = StepReport(self.iteration, loss.item(), _agreement(scores, target, batch))
+        self._since.append((report.loss, report.agreement))
+        if self.iteration % HISTORY_EVERY == 0:
+            self.history.append((self.iteration, *self.recent()))
+            self._since.clear()
+        return report
+
+    def _descend(self, loss: Tensor) -> None:
+        recipe = self.config.recipe
+        if not math.isfinite(loss.item()):
+            raise TilencaError(
+                f"the loss is {loss.item()} at iteration {self.iteration + 1}: training diverged; "
+                "try another --seed, or a recipe with a lower learning rate"
+            )
+        if recipe.cosine:
+            progress = self.iteration / recipe.iterations
+            for group in self.optimizer.param_groups:
+                group["lr"] = recipe.learning_rate * 0.5 * (1 + math.cos(math.pi * progress))
+        self.optimizer.zero_grad()
+        loss.backward()  # type: ignore[no-untyped-call]
+        if recipe.clip_norm > 0:
+            torch.nn.utils.clip_grad_norm_(self.net.parameters(), recipe.clip_norm)
+        self.optimizer.step()
+        if recipe.bounded:
+            self.net.project()
+
+    def save(self, path: Path) -> None:
+        """Writes a checkpoint; an interrupted write leaves the one before."""
+        state = {
+            "config": self.config.as_json(),
+            "iteration": self.iteration,
+            "random": self.random.bit_generator.state,
+            "net": self.net.state_dict(),
+            "optimizer": self.optimizer.state_dict(),
+            "pools": self.pools.state(),
+            "history": (self.history, self._since),
+        }
+        partial = path.with_suffix(".part")
+        torch.save(state, partial)
+        partial.replace(path)
+
+    def load(self, path: Path) -> None:
+        """Continues where a checkpoint was written.
+
+        Raises:
+            UsageError: there is none, it is damaged, or of another configuration.
+        """
+        try:
+            state = torch.load(path, map_location=self.device, weights_only=True)
+            config, iteration = state["config"], state["iteration"]
+        except FileNotFoundError as error:
+            raise UsageError(f"{path}: nothing to resume; train without --resume") from error
+        except Exception as error:  # torch raises whatever its unpickler met
+            raise UsageError(
+                f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
+            ) from error
+        mine = self.config.as_json()
+        for key, value in mine.items():
+            if config.get(key) != value:
+                raise UsageError(
+                    f"{path}: made with another {key}; give the arguments of the run to resume, or train "
+                    "into another directory"
+                )
+        self.net.load_state_dict(state["net"])
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.pools.restore(state["pools"])
+        self.random.bit_generator.state = state["random"]
+        self.history, self._since = ([tuple(row) for row in rows] for rows in state["history"])
+        self.iteration = iteration
+
+
+def _agreement(scores: Tensor, target: Tensor, batch: Batch) -> float:
+    wrong = (scores.detach().argmax(dim=1) != target).cpu().numpy()
+    return float((np.add.reduceat(wrong, batch.starts, dtype=np.int64) == 0).mean())

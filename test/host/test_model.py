@@ -1,0 +1,140 @@
+"""The network: what a cell perceives, how it updates, and that fast and clear code agree."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from tilenca import paths
+from tilenca.drawings import Drawings, load_drawings
+from tilenca.errors import UsageError
+from tilenca.model import LARGEST, STEPS, TileNet, initial_arrays, perceive, perceive_by_convolution
+from tilenca.modelfile import Dimensions
+from tilenca.recipes import RECIPES
+from tilenca.rollout import live, live_by_autograd
+from tilenca.schedule import draw_schedule
+
+FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "digits-7x6.toml")]
+
+
+@pytest.fixture(scope="module")
+def drawings() -> Drawings:
+    return load_drawings(FILES, 20)
+
+
+def test_perceiving_real_cells_equals_a_convolution_over_the_whole_grid(drawings: Drawings) -> None:
+    random = np.random.default_rng(1)
+    for number, shape in enumerate(drawings.shapes):
+        batch = drawings.batch(np.array([number]))
+        state = torch.from_numpy(random.normal(size=(len(shape.cells), 21)).astype(np.float32))
+        grid = torch.zeros(1, 21, len(shape.rows), len(shape.rows[0]))
+        rows, columns = map(list, zip(*shape.cells, strict=True))
+        grid[0, :, rows, columns] = state.T
+        convolved = perceive_by_convolution(grid)[0, :, rows, columns].T
+        perceived = perceive(state, state, torch.from_numpy(batch.neighbours.reshape(-1)))
+        assert torch.equal(perceived, convolved), f"shape {shape.name}"
+
+
+def test_own_message_is_perceived_as_it_is_and_neighbours_as_last_sent() -> None:
+    own, sent = torch.full((2, 1), 3.0), torch.tensor([[5.0], [7.0]])
+    side_by_side = torch.tensor(
+        [2, 1, 2, 2, 2, 2, 2, 0]
+    )  # cell 0 has cell 1 in the east, cell 1 cell 0 in the west
+    assert perceive(own, sent, side_by_side).tolist() == [[3, 0, 7, 0, 0], [3, 0, 0, 0, 5]]
+
+
+def test_an_untrained_cell_does_nothing() -> None:
+    net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), np.random.default_rng(0)))
+    state = torch.randint(-127, 128, (9, 21)).float()
+    after = net.update(state, torch.randint(-127, 128, (9, 105)).float(), torch.ones(9, 1), net.weights())
+    assert torch.equal(after, state)
+
+
+@pytest.mark.parametrize("bounded", [True, False])
+def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawings, bounded: bool) -> None:
+    random = np.random.default_rng(7)
+    net = TileNet(Dimensions(), bounded, initial_arrays(Dimensions(), random, zero_last=False))
+    batch = drawings.batch(np.arange(len(drawings)))
+    # Stored states are whole multiples of 2^-13, saturated.
+    states = np.round(random.normal(size=(len(batch.sample), 21)) * 8192).clip(-16256, 16256) / 8192
+    start = torch.from_numpy(states.astype(np.float32)) * net.units
+    schedule = draw_schedule(RECIPES["default"], batch, 12, random)
+    pull = torch.from_numpy(random.normal(size=start.shape).astype(np.float32))
+    ends, gradients = [], []
+    for way in (live, live_by_autograd):
+        net.zero_grad()
+        end = way(net, start, schedule)
+        (end * pull).sum().backward()  # type: ignore[no-untyped-call]
+        ends.append(end.detach())
+        gradients.append(
+            {name: value.grad.clone() for name, value in net.named_parameters() if value.grad is not None}
+        )
+    torch.testing.assert_close(ends[0], ends[1], rtol=0, atol=0 if bounded else 1e-4)
+    assert set(gradients[0]) == set(Dimensions().shapes())
+    for name, gradient in gradients[0].items():
+        size = gradients[1][name].abs().max()
+        assert size > 0, f"no gradient reaches {name}"
+        assert (gradient - gradients[1][name]).abs().max() < 1e-4 * size, name
+
+
+def test_projection_brings_every_weight_into_the_integer_range() -> None:
+    huge = {name: np.full(shape, 1e3, np.float32) for name, shape in Dimensions().shapes().items()}
+    net = TileNet(Dimensions(), True, huge)
+    net.project()
+    for name, value in net.named_parameters():
+        assert (value * STEPS[name] == LARGEST[name]).all(), name
+
+
+def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latency(drawings: Drawings) -> None:
+    recipe = replace(RECIPES["default"], clocks=1.0, lossy=0.0, rounds_per_period=(4.0, 4.0), drift=0.0)
+    recipe = replace(recipe, latency=(0.5, 0.5))
+    batch = drawings.batch(np.array([0]))
+    schedule = draw_schedule(recipe, batch, 41, np.random.default_rng(3))
+    for cell in range(len(batch.sample)):
+        fires, arrives = (np.flatnonzero(what[:, cell]) for what in (schedule.fires, schedule.arrives))
+        assert set(np.diff(fires)) == {4}
+        assert {(a - fires[fires <= a].max()) for a in arrives if a >= fires[0]} == {2}
+
+
+def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
+    recipe = replace(RECIPES["default"], lossy=1.0, max_loss=1.0)
+    batch = drawings.batch(np.arange(len(drawings)))
+    schedule = draw_schedule(recipe, batch, 50, np.random.default_rng(3))
+    lost = schedule.neighbours != batch.neighbours
+    assert (schedule.neighbours[lost] == len(batch.sample)).all()
+    assert 0.2 < lost[:, batch.neighbours < len(batch.sample)].mean() < 0.8
+
+
+def test_every_drawing_laid_on_another_keeps_tiles_at_their_places(drawings: Drawings) -> None:
+    random = np.random.default_rng(5)
+    one, four = (next(n for n, s in enumerate(drawings.shapes) if s.name == name) for name in "14")
+    columns = {
+        drawings.shapes[four].cells[i]
+        for _ in range(200)
+        for i in drawings.overlap(one, four, random)
+        if i >= 0
+    }
+    assert columns  # a "1" may have stood on several columns of the "4"
+    stays = drawings.overlap(four, one, random)
+    assert len(stays) == 5
+    assert (stays >= 0).sum() >= 1
+    same = drawings.overlap(four, four, random)
+    assert same.tolist() == list(range(len(same)))
+
+
+def test_a_drawing_with_two_labels_in_two_files_is_refused(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.toml", tmp_path / "b.toml"
+    first.write_text('[[shape]]\nlabel = "1"\ngrid = """\n##\n"""\n')
+    second.write_text('[[shape]]\nlabel = "2"\ngrid = """\n##\n"""\n')
+    with pytest.raises(UsageError, match=r"b\.toml: '2' is drawn exactly like '1' of .*a\.toml"):
+        load_drawings([first, second])
+
+
+def test_too_many_classes_over_all_files_are_refused(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.toml", tmp_path / "b.toml"
+    first.write_text('[[shape]]\nlabel = "1"\ngrid = """\n##\n"""\n')
+    second.write_text('[[shape]]\nlabel = "2"\ngrid = """\n###\n"""\n')
+    with pytest.raises(UsageError, match="2 classes in all files, but the model's state has room for 1"):
+        load_drawings([first, second], max_classes=1)

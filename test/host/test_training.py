@@ -1,0 +1,228 @@
+"""`tilenca train` from drawings to a model on disk: same seed, same bytes, interrupted or not; refusals."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from tilenca import cli, paths
+from tilenca.drawings import load_drawings
+from tilenca.errors import TilencaError, UsageError
+from tilenca.modelfile import Dimensions, load_model
+from tilenca.pool import Pools
+from tilenca.recipes import RECIPES
+from tilenca.training import Config, Trainer
+
+TWO_SHAPES = (
+    '[[shape]]\nlabel = "1"\ngrid = """\n#\n#\n#\n"""\n[[shape]]\nlabel = "7"\ngrid = """\n##\n.#\n.#\n"""\n'
+)
+WRITTEN = ("model.json", "weights.npz", "metrics.json", "history.csv", "README.md")
+
+
+@pytest.fixture(scope="module")
+def shapes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("shapes") / "two.toml"
+    path.write_text(TWO_SHAPES)
+    return path
+
+
+@pytest.fixture(scope="module")
+def model(shapes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model trained with seed 5, not interrupted."""
+    out = tmp_path_factory.mktemp("models") / "model"
+    assert train(shapes, out) == 0
+    return out
+
+
+def train(shapes: Path, out: Path, *more: str) -> int:
+    words = [
+        "train",
+        "--shapes",
+        str(shapes),
+        "--out",
+        str(out),
+        "--recipe",
+        "smoke",
+        "--hidden",
+        "12",
+        "--seed",
+        "5",
+        *more,
+    ]
+    return cli.main(words)
+
+
+def trainer(seed: int = 1) -> Trainer:
+    drawings = load_drawings([paths.DEFAULT_SHAPES])
+    config = Config(RECIPES["smoke"], Dimensions(), seed, drawings.labels, drawings.sources)
+    return Trainer(config, drawings, torch.device("cpu"))
+
+
+def test_the_same_seed_gives_the_same_bytes_and_json_names_them(
+    shapes: Path, model: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {name: (model / name).read_bytes() for name in WRITTEN}
+    assert train(shapes, model, "--force", "--json") == 0
+    assert {name: (model / name).read_bytes() for name in WRITTEN} == before
+    document = json.loads(capsys.readouterr().out)
+    assert document["model"] == str(model)
+    assert document["seconds"] > 0
+    assert document["metrics"] == json.loads((model / "metrics.json").read_text())
+
+
+def test_another_seed_gives_another_model() -> None:
+    one, two = trainer(seed=1), trainer(seed=2)
+    for learner in (one, two):
+        learner.step()
+    assert not np.array_equal(one.net.arrays()["w3"], two.net.arrays()["w3"])
+
+
+def test_a_resumed_run_ends_in_the_bytes_of_an_uninterrupted_one(
+    shapes: Path, model: Path, tmp_path: Path
+) -> None:
+    drawings = load_drawings([shapes])
+    config = Config(RECIPES["smoke"], Dimensions(21, 12, 12), 5, drawings.labels, drawings.sources)
+    first = Trainer(config, drawings, torch.device("cpu"))
+    for _ in range(17):
+        first.step()
+    first.save(tmp_path / "checkpoint.pt")
+    assert train(shapes, tmp_path, "--resume") == 0
+    for name in ("weights.npz", "metrics.json", "history.csv"):
+        assert (tmp_path / name).read_bytes() == (model / name).read_bytes(), name
+    assert not (tmp_path / "checkpoint.pt").exists()
+
+
+def test_ctrl_c_saves_a_checkpoint_says_how_to_go_on_and_exits_130(shapes: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["train", "--shapes", shapes, "--out", out, "--recipe", "smoke", "--iterations", "1000000"]
+    process = subprocess.Popen(
+        [sys.executable, "-u", "-m", "tilenca.cli", *map(str, words)], stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    # Training announces itself once its signal handler stands.
+    first = process.stderr.readline()
+    os.kill(process.pid, signal.SIGINT)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 130, first + rest
+    assert "continue with: tilenca train" in rest
+    assert "--resume" in rest
+    assert (out / "checkpoint.pt").exists()
+    assert not (out / "model.json").exists()
+
+
+def test_a_model_says_how_it_was_made(model: Path) -> None:
+    made = load_model(model).made
+    assert (made["recipe_name"], made["seed"], made["recipe"]["iterations"]) == ("smoke", 5, 40)
+    assert made["sources"][0]["file"] == "two.toml"
+    card = (model / "README.md").read_text()
+    assert made["command"] in card
+    assert "the tiles' own clocks" in card
+
+
+def test_two_drawings_are_told_apart_after_a_short_training(shapes: Path) -> None:
+    drawings = load_drawings([shapes])
+    recipe = replace(
+        RECIPES["smoke"], iterations=200, rounds=(8, 12), learning_rate=5e-3, pool=0, quiet_pool=0
+    )
+    recipe = replace(recipe, quiet_batch=0, clocks=0.0, lossy=0.0)
+    config = Config(recipe, Dimensions(8, 16, 16), 1, drawings.labels, drawings.sources)
+    learner = Trainer(config, drawings, torch.device("cpu"))
+    agreements = [learner.step().agreement for _ in range(200)]
+    assert np.mean(agreements[:20]) < 0.6
+    assert np.mean(agreements[-50:]) > 0.8
+
+
+def test_loss_that_is_not_a_number_stops_training() -> None:
+    learner = trainer()
+    with torch.no_grad():
+        next(learner.net.parameters())[0, 0] = torch.nan
+    with pytest.raises(TilencaError, match=r"loss is nan at iteration 1.*--seed"):
+        learner.step()
+
+
+def test_pools_hold_states_of_their_drawings_only() -> None:
+    learner = trainer()
+    for _ in range(30):
+        learner.step()
+    for pool in (learner.pools.busy, learner.pools.quiet):
+        sizes = learner.drawings.sizes[pool.drawing]
+        for states, size in zip(pool.states, sizes, strict=True):
+            assert not states[size:].any()
+        assert np.abs(pool.states).max() <= 127 / 64
+
+
+def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
+    drawings = load_drawings([paths.DEFAULT_SHAPES])
+    pools = Pools(RECIPES["smoke"], drawings, 21, np.random.default_rng(1))
+    four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
+    kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])
+    for _ in range(200):
+        pools.busy.drawing[0] = four
+        pools.busy.states[0] = 0
+        pools.busy.states[0, :kept, 3] = 0.25
+        pools.switch(pools.busy, 0)
+        if pools.busy.drawing[0] == nine:
+            break
+    assert pools.busy.drawing[0] == nine
+    assert (pools.busy.states[0, :all_of_nine, 3] == 0.25).sum() == kept
+    assert (pools.busy.states[0, :all_of_nine, 0] == 1.0).sum() == all_of_nine - kept
+    assert not pools.busy.states[0, all_of_nine:].any()
+
+
+Refusal = Callable[[Path, Path], list[str]]
+REFUSALS: list[tuple[str, Refusal]] = [
+    ("holds a model already", lambda shapes, full: ["--shapes", str(shapes), "--out", str(full)]),
+    (
+        "no checkpoint.pt to resume",
+        lambda shapes, full: ["--shapes", str(shapes), "--out", str(full), "--resume"],
+    ),
+    ("no recipe 'fast'", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--recipe", "fast"]),
+    ("--state 1", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--state", "1"]),
+    ("room for 1;", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--state", "2"]),
+    ("--hidden 128", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--hidden", "128"]),
+    ("--device tpu", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--device", "tpu"]),
+    ("must be at least 1", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--iterations", "0"]),
+]
+
+
+@pytest.mark.parametrize(("message", "words"), REFUSALS, ids=[message for message, _ in REFUSALS])
+def test_what_cannot_be_done_is_refused_in_one_line(
+    message: str,
+    words: Refusal,
+    shapes: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    full = tmp_path / "full"
+    full.mkdir()
+    (full / "model.json").write_text("{}")
+    assert cli.main(["train", *words(shapes, full)]) == 2
+    error = capsys.readouterr().err.strip()
+    assert message in error
+    assert len(error.splitlines()) == 1
+    assert (full / "model.json").read_text() == "{}"
+
+
+def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    trainer(seed=1).save(path)
+    with pytest.raises(UsageError, match="made with another seed"):
+        trainer(seed=2).load(path)
+
+
+def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    trainer().save(path)
+    path.write_bytes(path.read_bytes()[:5000])
+    with pytest.raises(UsageError, match="damaged checkpoint"):
+        trainer().load(path)
