@@ -16,7 +16,7 @@ bool usart_read(uint8_t number, uint8_t* byte);
 // Queues all of the bytes or, if there is no room for all, none.
 bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 
-// Whether everything queued has gone to the line.
+// Whether nothing is queued; up to two bytes may still be leaving.
 bool usart_idle(uint8_t number);
 
 } // namespace board

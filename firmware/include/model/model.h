@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model D702; do not edit. Body a69f575039b119d8
+// Rendered by `tilenca export` from model 79C0; do not edit. Body a092247df2cf5be2
 #pragma once
 
 #include <stdint.h>
@@ -8,7 +8,7 @@
 namespace tilenca {
 namespace model {
 
-constexpr uint16_t kModelId = 0xD702;
+constexpr uint16_t kModelId = 0x79C0;
 constexpr uint8_t kChannels = 21;
 constexpr uint8_t kHidden1 = 40;
 constexpr uint8_t kHidden2 = 40;

@@ -35,9 +35,15 @@ ISR(TIMER4_COMPA_vect) {
 
 void sleep() {
     set_sleep_mode(SLEEP_MODE_IDLE);
+    sleep_enable();
+    cli();
     while (ticks == static_cast<uint8_t>(now)) {
-        sleep_mode();
+        sei(); // takes effect after the next instruction: a tick that comes in between ends the sleep at once
+        sleep_cpu();
+        cli();
     }
+    sei();
+    sleep_disable();
 }
 
 void read_eeprom(uint8_t* bytes, uint8_t size) {

@@ -55,11 +55,15 @@ void south_begin() {
     PCIFR = 1 << PCIF2;
     PCICR |= 1 << PCIE2;
 
-    // Fast PWM with ICR1 as top (mode 14), no prescaler.
+    // Fast PWM with ICR1 as top (mode 14), no prescaler. The mode comes first: the chip ignores writes to
+    // ICR1 in a mode that does not use it as top (datasheet, "Input Capture Register").
+    TCCR1B = 0;
+    TCCR1A = 1 << WGM11;
+    TCCR1B = 1 << WGM13 | 1 << WGM12;
     ICR1 = kSouthBitCycles - 1;
     OCR1B = 0;
-    TCCR1A = 1 << WGM11;
-    TCCR1B = 1 << WGM13 | 1 << WGM12 | 1 << CS10;
+    TCNT1 = 0;
+    TCCR1B |= 1 << CS10;
 }
 
 bool south_read(uint8_t* byte) {
