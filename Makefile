@@ -67,7 +67,7 @@ format: setup-check ## format all Python and C++
 	@.venv/bin/clang-format -i $(CPP)
 
 train: setup-train ## train a model of the digits into build/models/digits
-	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
+	@$(TILENCA) train --shapes shapes/digits*.toml --out build/models/digits
 
 bench: setup-demo ## print exact sizes of the firmware and the speed of the emulation
 	@$(PIO) run -s -e $(ENV)

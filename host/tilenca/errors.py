@@ -1,8 +1,11 @@
 """The failures a user can cause or meet, each with the exit status of the command that met it.
 
 A message is one line: what is wrong, where, and what to do about it. `tilenca.cli` prints it on stderr
-without a traceback; every other exception is a defect of this program.
+without a traceback, and so it does what the system refuses (a full disk, no memory). All else is a defect of
+this program.
 """
+
+from tilenca.paths import FIRMWARE_ELF
 
 
 class TilencaError(Exception):
@@ -27,3 +30,18 @@ class BuildError(TilencaError):
     """A build, an export or a missing build product (exit status 4)."""
 
     exit_status = 4
+
+
+class InterruptedRunError(TilencaError):
+    """Ctrl-C, and there is more to say than that: how to go on (exit status 130)."""
+
+    exit_status = 130
+
+
+def image_error(message: str) -> TilencaError:
+    """What is wrong with an image: our own build's is a failed build, a given one's is a usage error.
+
+    Args:
+        message: the whole message, which begins with the image's path.
+    """
+    return (BuildError if message.startswith(str(FIRMWARE_ELF.parent)) else UsageError)(message)

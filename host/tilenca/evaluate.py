@@ -9,9 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
 from tilenca import paths
 from tilenca.drawings import Drawings, load_drawings
@@ -19,6 +16,7 @@ from tilenca.errors import BuildError, UsageError
 from tilenca.modelfile import Model, load_model
 from tilenca.shapes import load_task
 from tilenca.simulate import Conditions, Engine, FastEngine, Simulator
+from tilenca.tables import table
 from tilenca.validation import SETTLED, settle_times
 
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
@@ -116,7 +114,7 @@ def _engine(name: str, model: Model) -> Engine:
         from tilenca.tensors import FloatEngine
     except ImportError as error:
         raise UsageError(
-            "--engine float needs PyTorch; use --engine fast, or run: pip install 'tilenca[train]'"
+            "--engine float needs PyTorch; use --engine fast, or run: make setup-train"
         ) from error
     return FloatEngine(model)
 
@@ -191,18 +189,15 @@ def _print(report: dict[str, Any]) -> None:
     def times(settle: dict[str, float | None]) -> list[str]:
         return ["never" if value is None else f"{value:.0f}" for value in settle.values()]
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("shape", "file", "cells right", "all right", "median", "95 %"):
-        table.add_column(heading, justify="left" if heading in ("shape", "file") else "right")
-    for row in report["per_shape"]:
+    def cells(name: str, file: str, row: dict[str, Any]) -> list[str]:
         shares = f"{row['cells_right']:.4f}", f"{row['total_agreement']:.4f}"
-        table.add_row(row["name"], row["file"], *shares, *times(row["steps_to_agreement"]))
-    table.add_section()
-    shares = f"{report['cells_right']:.4f}", f"{report['total_agreement']:.4f}"
-    table.add_row("all", "", *shares, *times(report["steps_to_agreement"]))
+        return [name, file, *shares, *times(row["steps_to_agreement"])]
+
+    rows = [cells(row["name"], row["file"], row) for row in report["per_shape"]]
+    rows.append(cells("all", "", report))
     print(
         f"model {report['model']}, engine {report['engine']}, schedule {report['schedule']}: after "
         f"{report['steps']} steps, {report['runs']} runs per shape; median and 95 %: steps until all tiles "
         "are right and stay so"
     )
-    Console(highlight=False).print(table)
+    print(table(("shape", "file", "cells right", "all right", "median", "95 %"), rows))

@@ -19,7 +19,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from tilenca import paths
 from tilenca.drawings import load_drawings
-from tilenca.errors import TilencaError, UsageError
+from tilenca.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, Model
 from tilenca.recipes import RECIPES, find_recipe
 
@@ -83,8 +83,7 @@ def run(args: argparse.Namespace) -> int:
     trainer = Trainer(config, drawings, torch.device(args.device))
     if args.resume:
         trainer.load(args.out / CHECKPOINT)
-    if not _train(trainer, args):
-        return 130
+    _train(trainer, args)
 
     made = {
         "command": _command(args),
@@ -94,13 +93,13 @@ def run(args: argparse.Namespace) -> int:
     }
     model, cut = quantise(dimensions, drawings.labels, trainer.net.arrays(), made)
     say = Console(stderr=True).print
-    metrics = validate(
-        IntegerEngine(model),
-        drawings,
-        validation_runs,
-        args.seed,
-        lambda what: say(f"measuring {what}"),
-    )
+    engine = IntegerEngine(model)
+    try:
+        metrics = validate(
+            engine, drawings, validation_runs, args.seed, lambda what: say(f"measuring {what}")
+        )
+    except KeyboardInterrupt:
+        raise _interrupted(args, "while measuring the trained model") from None
     metrics["weights_cut"] = cut
     _write(args.out, model, metrics, trainer.history)
     _report(args, model, metrics, time.monotonic() - started)
@@ -137,9 +136,7 @@ def _import_torch(device: str) -> Any:
     try:
         import torch
     except ImportError as error:
-        raise UsageError(
-            "training needs PyTorch, which is not installed; run: pip install 'tilenca[train]'"
-        ) from error
+        raise UsageError("training needs PyTorch, which is not installed; run: make setup-train") from error
     if device not in ("cpu", "cuda"):
         raise UsageError(f"--device {device}: use cpu or cuda")
     if device == "cuda" and not torch.cuda.is_available():
@@ -147,8 +144,8 @@ def _import_torch(device: str) -> Any:
     return torch
 
 
-def _train(trainer: "Trainer", args: argparse.Namespace) -> bool:
-    """Trains to the end; False when interrupted, with everything done so far in the checkpoint."""
+def _train(trainer: "Trainer", args: argparse.Namespace) -> None:
+    """Trains to the end; when interrupted raises, with everything done so far in the checkpoint."""
     checkpoint = args.out / CHECKPOINT
     saved = time.monotonic()
     with _interruptible() as interrupted, _progress(trainer) as show:
@@ -160,12 +157,12 @@ def _train(trainer: "Trainer", args: argparse.Namespace) -> bool:
             if interrupted():
                 break
     if trainer.iteration < trainer.config.recipe.iterations:
-        again = _command(args) + ("" if args.resume else " --resume")
-        print(
-            f"tilenca: interrupted at iteration {trainer.iteration}; continue with: {again}", file=sys.stderr
-        )
-        return False
-    return True
+        raise _interrupted(args, f"at iteration {trainer.iteration}")
+    trainer.save(checkpoint)  # measuring takes a while, and can be interrupted too
+
+
+def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
+    return InterruptedRunError(f"interrupted {where}; continue with: {_command(args)} --resume")
 
 
 @contextmanager
@@ -229,7 +226,8 @@ def _command(args: argparse.Namespace) -> str:
 
     words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
-    for option, default in (("iterations", None), ("state", 21), ("hidden", 40), ("device", "cpu")):
+    words += ["--iterations", str(args.iterations or find_recipe(args.recipe).iterations)]
+    for option, default in (("state", 21), ("hidden", 40), ("device", "cpu")):
         if (value := getattr(args, option)) != default:
             words += [f"--{option}", str(value)]
     if args.validation_runs is not None:

@@ -118,6 +118,24 @@ def test_ctrl_c_saves_a_checkpoint_says_how_to_go_on_and_exits_130(shapes: Path,
     assert not (out / "model.json").exists()
 
 
+def test_ctrl_c_while_measuring_keeps_what_was_trained(
+    shapes: Path,
+    model: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("tilenca.validation.validate", interrupt)
+        assert train(shapes, tmp_path) == 130
+    assert "--resume" in capsys.readouterr().err
+    assert train(shapes, tmp_path, "--resume") == 0
+    assert (tmp_path / "weights.npz").read_bytes() == (model / "weights.npz").read_bytes()
+
+
 def test_a_model_says_how_it_was_made(model: Path) -> None:
     made = load_model(model).made
     assert (made["recipe_name"], made["seed"], made["recipe"]["iterations"]) == ("smoke", 5, 40)
