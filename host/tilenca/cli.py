@@ -6,12 +6,14 @@ Only the chosen module is imported, so that commands which need no torch never w
 
 import argparse
 import importlib
-import os
 import sys
 from collections.abc import Sequence
 
 from tilenca import __version__
+from tilenca.arguments import Parser
 from tilenca.errors import TilencaError
+from tilenca.interrupts import ending_like_ctrl_c
+from tilenca.streams import check_streams, finish_streams, warn
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("tilenca.train", "train a model on the shapes of a file"),
@@ -23,12 +25,13 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "monitor": ("tilenca.monitor", "watch the telemetry of all tiles"),
 }
 
+FAILED = 1
 INTERRUPTED = 130
 
 
 def build_parser(command: str | None = None) -> argparse.ArgumentParser:
     """The command line's grammar; only `command`'s own arguments are loaded."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tilenca",
         description="Tiles that know which shape they form: train, export, emulate, flash and watch them.",
         epilog="Exit status: 0 all well, 1 a check failed, 2 usage, 3 no device, 4 build or export failed, "
@@ -47,23 +50,35 @@ def build_parser(command: str | None = None) -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns its exit status (see `--help`)."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    command = next((word for word in arguments if not word.startswith("-")), None)
     try:
-        args = build_parser(command).parse_args(arguments)
-        status = importlib.import_module(COMMANDS[args.command][0]).run(args)
-        sys.stdout.flush()
-        return int(status)
+        check_streams()
+        try:
+            with ending_like_ctrl_c():
+                status = _run(list(sys.argv[1:] if argv is None else argv))
+        finally:
+            finish_streams()
+        return status
     except TilencaError as error:
-        print(f"tilenca: {error}", file=sys.stderr)
+        warn(f"tilenca: {error}")
         return error.exit_status
     except KeyboardInterrupt:
-        print("tilenca: interrupted", file=sys.stderr)
+        warn("tilenca: interrupted")
         return INTERRUPTED
     except BrokenPipeError:
-        # The reader of our output (head, less) went away: nothing is wrong, and nothing more can be said.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return FAILED  # The reader of our output (head, less) went away before the work was done.
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        warn(f"tilenca: {where}{error.strerror or error}")
+        return FAILED
+    except MemoryError:
+        warn("tilenca: out of memory; close other programs, or give it less to do")
+        return FAILED
+
+
+def _run(arguments: list[str]) -> int:
+    command = next((word for word in arguments if not word.startswith("-")), None)
+    args = build_parser(command).parse_args(arguments)
+    return int(importlib.import_module(COMMANDS[args.command][0]).run(args))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,9 @@ import argparse
 import json
 from typing import Any
 
-from tilenca.ports import Port, add_port_argument, find_ports, warn
+from tilenca.arguments import add_port_argument
+from tilenca.ports import Port, find_ports
+from tilenca.streams import warn
 from tilenca.tables import table
 
 

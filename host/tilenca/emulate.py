@@ -3,7 +3,7 @@
 import argparse
 import json
 import os
-import sys
+import stat
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -11,19 +11,21 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from rich.console import Console
 from rich.live import Live
 
 from tilenca import paths
+from tilenca.arguments import count, number, whole
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
-from tilenca.emulate_view import Picture, beside, take_picture, verdict
+from tilenca.emulate_view import Picture, beside, mismatch, take_picture, verdict
 from tilenca.emulation import Conditions, Emulation, firmware_settings
-from tilenca.errors import BuildError, UsageError
-from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS, Settings
-from tilenca.recording import format_event
+from tilenca.errors import UsageError, image_error
+from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
+from tilenca.recording import Recorder, as_record
 from tilenca.shapes import Shape, Task, load_task
+from tilenca.streams import warn
 from tilenca.telemetry import Heard
 
 ALL = "all"
@@ -32,18 +34,23 @@ MAX_TILES = 255  # a tile's number is one byte
 PLAIN_WIDTH = 80
 DEFAULT_UPDATES = 30
 NO_BOOTLOADER = "none"
+# A UART that is off by a twentieth understands nothing; twice that is far enough to see it.
+MAX_PPM = 100_000.0
+MAX_BOOT_SPREAD_S = 3600.0
+MAX_SECONDS = 86_400.0
 
-Listener = Callable[[Emulation, list[Heard]], None]
+# Lays out one shape in tiles.
+LayOut = Callable[[Shape], Emulation]
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A shape that has run to its end."""
+    """A shape that has run to its end; `notes` are for stderr, once each."""
 
     report: dict[str, Any]
     picture: Picture
     verdict: str
-    warnings: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -59,23 +66,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--elf", type=Path, default=paths.FIRMWARE_ELF, metavar="F", help="firmware image (the last build's)")
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--seconds", type=_positive, metavar="S", help="run for S emulated seconds")
     length.add_argument(
-        "--updates", type=_count, metavar="N", help=f"run until every tile did N updates ({DEFAULT_UPDATES})"
+        "--seconds", type=number(0.001, MAX_SECONDS), metavar="S", help="run for S emulated seconds"
     )
-    add("--period-ms", type=_period, metavar="N", help="update period of the tiles (the firmware's default)")
-    add("--ppm", type=_not_negative, default=3000.0, metavar="X", help="clock errors within +-X ppm (3000)")
+    length.add_argument(
+        "--updates", type=count, metavar="N", help=f"run until every tile did N updates ({DEFAULT_UPDATES})"
+    )
+    add(
+        "--period-ms",
+        type=whole(MIN_PERIOD_MS, MAX_PERIOD_MS),
+        metavar="N",
+        help="update period of the tiles (the firmware's default)",
+    )
+    add(
+        "--ppm",
+        type=number(0.0, MAX_PPM),
+        default=3000.0,
+        metavar="X",
+        help="clock errors within +-X ppm (3000)",
+    )
     add(
         "--boot-spread",
-        type=_not_negative,
+        type=number(0.0, MAX_BOOT_SPREAD_S),
         default=1.0,
         metavar="S",
         help="switched on within 0..S seconds (1.0)",
     )
     add("--seed", type=int, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
     add("--record", type=Path, metavar="F", help="write all telemetry to F, one JSON object per line")
-    add("--json", action="store_true", help="one JSON document on stdout")
     look = parser.add_mutually_exclusive_group()
+    look.add_argument("--json", action="store_true", help="one JSON document on stdout")
     look.add_argument("--watch", action="store_true", help="show the tiles while they run, in real time")
     look.add_argument(
         "--serve", type=Path, metavar="DIR", help="give each tile's USB serial as DIR/tile-01, ..."
@@ -84,58 +104,74 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--keep-running", action="store_true", help="with --serve: opening a port does not reset its tile")
 
 
-def _number(text: str, lowest: float) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = float("nan")
-    if not lowest <= number < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number from {lowest:g}")
-    return number
-
-
-def _not_negative(text: str) -> float:
-    return _number(text, 0.0)
-
-
-def _positive(text: str) -> float:
-    return _number(text, 0.001)
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 1")
-    return int(text)
-
-
-def _period(text: str) -> int:
-    if not text.isdecimal() or not MIN_PERIOD_MS <= int(text) <= MAX_PERIOD_MS:
-        raise argparse.ArgumentTypeError(f"'{text}' is not {MIN_PERIOD_MS} to {MAX_PERIOD_MS} milliseconds")
-    return int(text)
-
-
 def run(args: argparse.Namespace) -> int:
     """Runs the command; 1 when a tile of any shape ends up wrong."""
+    _check_combinations(args)
     task = load_task(args.shapes)
     shapes = _chosen(task, args.shape or [ALL])
-    if not args.elf.exists():
-        raise BuildError(f"{args.elf}: no firmware image; run `make demo` or `pio run`, or give --elf")
+    if args.serve is not None and len(shapes) != 1:
+        raise UsageError(f"--serve needs one shape, got {len(shapes)}; give --shape NAME")
+    _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
     defaults = firmware_settings(args.elf)
     conditions = Conditions(
-        args.seconds, args.updates or DEFAULT_UPDATES, args.period_ms, args.ppm, args.boot_spread, args.seed
+        seconds=args.seconds,
+        updates=args.updates or DEFAULT_UPDATES,
+        period_ms=args.period_ms,
+        ppm=args.ppm,
+        boot_spread_s=args.boot_spread,
+        seed=args.seed,
+        bootloader=None if args.serve is None else _bootloader(args.bootloader),
     )
+
+    def lay_out(shape: Shape) -> Emulation:
+        return Emulation(task, shape, args.elf, conditions, defaults)
+
     if args.serve is not None:
-        return _serve(args, task, shapes, conditions, defaults)
+        emulation = lay_out(shapes[0])
+        with emulation.array:
+            serve(emulation, args.serve, args.seconds, reset_on_open=not args.keep_running)
+        return 0
     with ExitStack() as stack:
-        record = stack.enter_context(_open_record(args.record)) if args.record else None
-        if args.watch and not args.json:
-            outcomes = [_watch(task, shape, args.elf, conditions, defaults, record) for shape in shapes]
+        record = stack.enter_context(Recorder(args.record, "w")) if args.record else None
+        if args.watch:
+            outcomes = [_watch(lay_out, shape, record) for shape in shapes]
         else:
-            outcomes = _run_all(task, shapes, args.elf, conditions, defaults, record)
-    for warning in sorted({warning for outcome in outcomes for warning in outcome.warnings}):
-        print(f"tilenca: not emulated: {warning}", file=sys.stderr)
+            outcomes = _run_all(lay_out, shapes, record)
+    for note in sorted({note for outcome in outcomes for note in outcome.notes}):
+        warn(f"tilenca: {note}")
     _print(args, outcomes)
     return 0 if all(outcome.report["all_right"] for outcome in outcomes) else 1
+
+
+def _check_combinations(args: argparse.Namespace) -> None:
+    """Refuses what would be ignored; what excludes each other by itself, argparse knows."""
+    serving = args.serve is not None
+    for option, given in (("--record", args.record), ("--updates", args.updates)):
+        if serving and given is not None:
+            raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")
+    for option, given in (("--bootloader", args.bootloader), ("--keep-running", args.keep_running or None)):
+        if not serving and given is not None:
+            raise UsageError(f"{option} does nothing without --serve; add --serve DIR or leave it out")
+
+
+def _check_readable(image: Path, remedy: str) -> None:
+    try:
+        fact = None if stat.S_ISREG(image.stat().st_mode) else "not a file"
+        if fact is None:
+            image.open("rb").close()
+    except OSError as error:
+        fact = error.strerror
+    if fact is not None:
+        raise image_error(f"{image}: {fact}; {remedy}")
+
+
+def _bootloader(given: str | None) -> Path | None:
+    if given is None:
+        return STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
+    if given == NO_BOOTLOADER:
+        return None
+    _check_readable(Path(given), f"give --bootloader an ELF or Intel HEX file, or {NO_BOOTLOADER}")
+    return Path(given)
 
 
 def _chosen(task: Task, names: Sequence[str]) -> list[Shape]:
@@ -148,44 +184,34 @@ def _chosen(task: Task, names: Sequence[str]) -> list[Shape]:
     return chosen
 
 
-def _open_record(path: Path) -> TextIO:
-    try:
-        return path.open("w", encoding="ascii")
-    except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}; give --record a file that can be written") from error
-
-
-def _write_record(record: TextIO, shape: Shape, heard: Sequence[Heard]) -> None:
-    for line in heard:
-        about = json.loads(format_event(line))
-        tile = int(line.port.rsplit("-", 1)[1])
-        record.write(json.dumps({**about, "tile": tile, "shape": shape.name}) + "\n")
+def _record_line(shape: Shape, heard: Heard) -> str:
+    tile = int(heard.port.rpartition("-")[2])
+    return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
 
 
 def _outcome(emulation: Emulation, started: float) -> Outcome:
-    warnings = tuple(warning for tile in emulation.array for warning in tile.warnings)
+    notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
+    if remedy := mismatch(emulation):
+        notes.append(remedy)
     report = emulation.report(time.monotonic() - started)
-    return Outcome(report, take_picture(emulation), verdict(emulation), warnings)
+    return Outcome(report, take_picture(emulation), verdict(emulation), tuple(notes))
 
 
-def _run_all(
-    task: Task, shapes: Sequence[Shape], elf: Path, conditions: Conditions, defaults: Settings | None,
-    record: TextIO | None,
-) -> list[Outcome]:  # fmt: skip
+def _run_all(lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None) -> list[Outcome]:
     """Runs shapes side by side, since they know nothing of each other; results come in their order."""
     stopped = threading.Event()
 
-    def one(shape: Shape) -> tuple[Outcome, list[Heard]]:
+    def one(shape: Shape) -> tuple[Outcome, list[str]]:
         started = time.monotonic()
-        kept: list[Heard] = []
+        kept: list[str] = []
 
         def keep(_: Emulation, heard: list[Heard]) -> None:
             if stopped.is_set():
                 raise KeyboardInterrupt
             if record is not None:
-                kept.extend(heard)
+                kept.extend(_record_line(shape, line) for line in heard)
 
-        emulation = Emulation(task, shape, elf, conditions, defaults)
+        emulation = lay_out(shape)
         with emulation.array:
             emulation.run(keep)
             return _outcome(emulation, started), kept
@@ -193,12 +219,13 @@ def _run_all(
     outcomes = []
     with ThreadPoolExecutor(min(WORKERS, os.cpu_count() or 1)) as pool:
         try:
-            for shape, (outcome, heard) in zip(shapes, pool.map(one, shapes), strict=True):
+            for shape, (outcome, kept) in zip(shapes, pool.map(one, shapes), strict=True):
                 outcomes.append(outcome)
-                speed = outcome.report["simulated_s"] / max(outcome.report["wall_s"], 0.001)
-                print(f"{outcome.verdict} [{speed:.1f} times real time]", file=sys.stderr)
+                emulated_s, wall_s = outcome.report["simulated_s"], outcome.report["wall_s"]
+                speed = emulated_s / max(wall_s, 0.001)
+                warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
                 if record is not None:
-                    _write_record(record, shape, heard)
+                    record.write(kept)
         except BaseException:
             stopped.set()
             pool.shutdown(wait=False, cancel_futures=True)
@@ -206,27 +233,21 @@ def _run_all(
     return outcomes
 
 
-def _watch(
-    task: Task,
-    shape: Shape,
-    elf: Path,
-    conditions: Conditions,
-    defaults: Settings | None,
-    record: TextIO | None,
-) -> Outcome:
+def _watch(lay_out: LayOut, shape: Shape, record: Recorder | None) -> Outcome:
     """Runs one shape in step with the wall clock, or slower, and shows it."""
     console = Console()
     started = time.monotonic()
-    emulation = Emulation(task, shape, elf, conditions, defaults)
+    emulation = lay_out(shape)
     told = [0] * len(emulation.array)
     with emulation.array, ExitStack() as stack:
         live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
 
         def show(running: Emulation, heard: list[Heard]) -> None:
             if record is not None:
-                _write_record(record, shape, heard)
+                record.write(_record_line(shape, line) for line in heard)
             if live is not None:
-                live.update(beside([take_picture(running)], console.width), refresh=True)
+                picture = beside([take_picture(running)], console, console.width, console.height)
+                live.update(picture, refresh=True)
                 time.sleep(max(0.0, started + running.array.time_s - time.monotonic()))
             else:
                 _tell_changes(running, told)
@@ -244,29 +265,6 @@ def _tell_changes(emulation: Emulation, told: list[int]) -> None:
             print(f"{change.time_s:8.3f} s  {emulation.shape.name}: tile {tile.index + 1} shows {shown}")
 
 
-def _serve(
-    args: argparse.Namespace,
-    task: Task,
-    shapes: Sequence[Shape],
-    conditions: Conditions,
-    defaults: Settings | None,
-) -> int:
-    if len(shapes) != 1:
-        raise UsageError(f"--serve needs one shape, got {len(shapes)}; give --shape NAME")
-    bootloader = _bootloader(args.bootloader)
-    settled = Conditions(**{**vars(conditions), "bootloader": bootloader})
-    emulation = Emulation(task, shapes[0], args.elf, settled, defaults)
-    with emulation.array:
-        serve(emulation, args.serve, args.seconds, reset_on_open=not args.keep_running)
-    return 0
-
-
-def _bootloader(given: str | None) -> Path | None:
-    if given is None:
-        return STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
-    return None if given == NO_BOOTLOADER else Path(given)
-
-
 def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:
     all_right = all(outcome.report["all_right"] for outcome in outcomes)
     if args.json:
@@ -276,7 +274,7 @@ def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:
     console = Console(highlight=False)
     if not (args.watch and console.is_terminal):  # there the last picture still stands
         width = console.width if console.is_terminal else PLAIN_WIDTH
-        console.print(beside([outcome.picture for outcome in outcomes], width))
+        console.print(beside([outcome.picture for outcome in outcomes], console, width), soft_wrap=True)
     for outcome in outcomes:
         console.print(outcome.verdict, soft_wrap=True, markup=False)
     right = sum(outcome.report["all_right"] for outcome in outcomes)

@@ -3,9 +3,9 @@
 As on a real board, opening the port resets the tile: into its bootloader, if it has one.
 """
 
+import fcntl
 import os
 import select
-import sys
 import time
 import tty
 from contextlib import ExitStack, suppress
@@ -14,6 +14,7 @@ from pathlib import Path
 from tilenca.emulation import Emulation, port_name
 from tilenca.emulator import EmulatedTile
 from tilenca.errors import UsageError
+from tilenca.streams import warn
 
 STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
@@ -75,27 +76,43 @@ def serve(emulation: Emulation, directory: Path, seconds: float | None, reset_on
     """Serves all tiles until `seconds` have passed on the wall clock, or for ever.
 
     Raises:
-        UsageError: the directory cannot be used.
+        UsageError: the directory cannot be used, or another run serves tiles there.
         TilencaError: a tile stopped at a fault.
     """
     created = not directory.exists()
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(
-            f"{directory}: {error.strerror}; give --serve a directory that can be written"
-        ) from error
     with ExitStack() as stack:
-        if created:
-            stack.callback(_remove, directory)
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            if created:
+                stack.callback(_remove, directory)
+            stack.callback(os.close, _lock(directory))
+        except OSError as error:
+            raise UsageError(
+                f"{directory}: {error.strerror}; give --serve a directory that can be written"
+            ) from error
         served = []
         for tile in emulation.array:
             served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
             stack.callback(served[-1].close)
-        print(
-            f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it", file=sys.stderr, flush=True
-        )
+        warn(f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it")
         _keep_step(emulation, served, seconds)
+
+
+def _lock(directory: Path) -> int:
+    """The directory, ours alone as long as the descriptor is open; the system closes it however we end.
+
+    Raises:
+        UsageError: another run has it.
+    """
+    descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise UsageError(
+            f"{directory}: another `tilenca emulate` serves its tiles there; end it, or give --serve another"
+        ) from None
+    return descriptor
 
 
 def _keep_step(emulation: Emulation, served: list[ServedTile], seconds: float | None) -> None:

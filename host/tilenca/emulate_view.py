@@ -3,16 +3,24 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rich.console import Group
+from rich.console import Console, Group
 from rich.text import Text
 
 from tilenca.emulation import Emulation
 from tilenca.glyphs import draw
 from tilenca.shapes import Shape
 
-TILE_WIDTH = 4  # three characters and a gap
-SHAPE_GAP = "    "
-ROWS_PER_TILE = 3
+# Box-drawing characters by their arms: 1 up, 2 right, 4 down, 8 left.
+LIGHT = " ╵╶╰╷│╭├╴╯─┴╮┤┬┼"
+HEAVY = " ╹╺┗╻┃┏┣╸┛━┻┓┫┳╋"
+UP, RIGHT, DOWN, LEFT = 1, 2, 4, 8
+
+TILE_WIDTH = 5
+PALENESS = 60
+SHAPE_GAP = "  "
+# A housing of its own, so that a digit can be read on any terminal's background.
+HOUSING = "on rgb(28,28,28)"
+FRAME = f"rgb(88,88,88) {HOUSING}"
 
 
 @dataclass(frozen=True)
@@ -31,33 +39,95 @@ def take_picture(emulation: Emulation) -> Picture:
 
 
 def _style(colour: tuple[int, int, int]) -> str:
-    """The LED's hue at full brightness: duties are small, so that real LEDs do not dazzle."""
+    """The LED's hue, brighter than the dim LEDs are, and paler, since pure blue is hard to read."""
     strongest = max(colour)
     if strongest == 0:
-        return ""
-    red, green, blue = (round(255 * duty / strongest) for duty in colour)
-    return f"rgb({red},{green},{blue})"
+        return HOUSING
+    red, green, blue = (PALENESS + round((255 - PALENESS) * duty / strongest) for duty in colour)
+    return f"rgb({red},{green},{blue}) {HOUSING}"
 
 
-def lines(picture: Picture) -> list[Text]:
-    """The picture as lines of equal width."""
-    cells = picture.shape.cells
-    height, width = max(row for row, _ in cells) + 1, max(col for _, col in cells) + 1
-    drawn = [[Text(" " * TILE_WIDTH) for _ in range(width)] for _ in range(height * ROWS_PER_TILE)]
-    for (row, col), segments, colour in zip(cells, picture.segments, picture.colours, strict=True):
-        for offset, part in enumerate(draw(segments)):
-            # A dark tile is still there.
-            text = part if segments else (" . " if offset == 1 else "   ")
-            drawn[row * ROWS_PER_TILE + offset][col] = Text(f"{text} ", style=_style(colour))
+def digit(segments: int) -> tuple[str, str, str]:
+    """Three rows of three characters: the lit segments as lines that meet at their ends."""
+    a, b, c, d, e, f, g = (segments >> bit & 1 for bit in range(7))
+    return (
+        HEAVY[RIGHT * a + DOWN * f] + HEAVY[(LEFT + RIGHT) * a] + HEAVY[LEFT * a + DOWN * b],
+        HEAVY[UP * f + RIGHT * g + DOWN * e]
+        + HEAVY[(LEFT + RIGHT) * g]
+        + HEAVY[UP * b + LEFT * g + DOWN * c],
+        HEAVY[UP * e + RIGHT * d] + HEAVY[(LEFT + RIGHT) * d] + HEAVY[LEFT * d + UP * c],
+    )
+
+
+def framed(picture: Picture) -> list[Text]:
+    """The picture as lines of equal width; tiles have a frame, and touching ones share its sides."""
+    height, width = len(picture.shape.rows), len(picture.shape.rows[0])
+    tiles = dict(zip(picture.shape.cells, zip(picture.segments, picture.colours, strict=True), strict=True))
+
+    # Sides of tiles between the corners of the lattice: from (row, col) to the right, and downwards.
+    def across(row: int, col: int) -> bool:
+        return (row, col) in tiles or (row - 1, col) in tiles
+
+    def down(row: int, col: int) -> bool:
+        return (row, col) in tiles or (row, col - 1) in tiles
+
+    def border(row: int) -> Text:
+        line = Text()
+        for col in range(width + 1):
+            arms = UP * down(row - 1, col) + RIGHT * across(row, col)
+            arms += DOWN * down(row, col) + LEFT * across(row, col - 1)
+            line.append(LIGHT[arms], FRAME if arms else "")
+            if col < width:
+                drawn = across(row, col)
+                line.append(LIGHT[(LEFT + RIGHT) * drawn] * TILE_WIDTH, FRAME if drawn else "")
+        return line
+
+    def inside(row: int, part: int) -> Text:
+        line = Text()
+        for col in range(width + 1):
+            drawn = down(row, col)
+            line.append(LIGHT[(UP + DOWN) * drawn], FRAME if drawn else "")
+            if (row, col) in tiles:
+                segments, colour = tiles[row, col]
+                line.append(digit(segments)[part].center(TILE_WIDTH), _style(colour))
+            elif col < width:
+                line.append(" " * TILE_WIDTH)
+        return line
+
+    lines = [
+        line for row in range(height) for line in (border(row), *(inside(row, part) for part in range(3)))
+    ]
+    return [*lines, border(height)]
+
+
+def compact(picture: Picture) -> list[Text]:
+    """The picture without frames, in ASCII: for small terminals and old encodings."""
+    height, width = len(picture.shape.rows), len(picture.shape.rows[0])
+    drawn = [[Text("    ") for _ in range(width)] for _ in range(height * 3)]
+    for (row, col), segments, colour in zip(
+        picture.shape.cells, picture.segments, picture.colours, strict=True
+    ):
+        for part, text in enumerate(draw(segments) if segments else ("   ", " . ", "   ")):
+            drawn[3 * row + part][col] = Text.assemble((text, _style(colour)), " ")
     return [Text.assemble(*line) for line in drawn]
 
 
-def beside(pictures: Sequence[Picture], room: int) -> Group:
-    """Pictures next to each other, as many as fit into `room` characters, the rest below."""
+def beside(pictures: Sequence[Picture], console: Console, width: int, height: int | None = None) -> Group:
+    """Pictures next to each other, as many as fit into `width` characters, the rest below.
+
+    Args:
+        pictures: what to show.
+        console: where; it decides which characters there are.
+        width: characters in a line.
+        height: lines that there are; None: as many as it takes.
+    """
+    blocks = list(map(framed, pictures))
+    if console.options.ascii_only or (height is not None and max(map(len, blocks)) >= height):
+        blocks = list(map(compact, pictures))
     bands: list[list[list[Text]]] = [[]]
-    for block in map(lines, pictures):
+    for block in blocks:
         used = sum(len(other[0]) + len(SHAPE_GAP) for other in bands[-1])
-        if bands[-1] and used + len(block[0]) > room:
+        if bands[-1] and used + len(block[0]) > width:
             bands.append([])
         bands[-1].append(block)
     output = []
@@ -86,5 +156,19 @@ def verdict(emulation: Emulation) -> str:
         for tile in emulation.array
         if emulation.shown(tile) != emulation.shape.label
     ]
-    total = f"{len(wrong)} of {count} tiles do not show {emulation.shape.label}"
+    model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""
+    total = f"{len(wrong)} of {count} tiles do not show {emulation.shape.label}{model}"
     return f"{name}: WRONG, {total}: {', '.join(wrong)}"
+
+
+def mismatch(emulation: Emulation) -> str | None:
+    """What to do if wrong tiles run a model of other shapes; None if nothing says that they do."""
+    task, hello = emulation.task, emulation.hello
+    foreign = {emulation.shown(tile) for tile in emulation.array} - {"", *task.labels}
+    if hello is None or emulation.all_right or (hello.classes == len(task.labels) and not foreign):
+        return None
+    return (
+        f"the firmware's model {hello.model_id:04X} knows {hello.classes} labels, {task.path} has "
+        f"{len(task.labels)} ({' '.join(task.labels)}); export the model trained on this file and build: "
+        "tilenca export --model DIR && pio run"
+    )

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tilenca.emulator import Array, EmulatedTile, Link
+from tilenca.emulator import EAST, SOUTH, Array, EmulatedTile, Link
 from tilenca.errors import TilencaError
 from tilenca.glyphs import label_of_glyph
 from tilenca.protocol import HelloSentence, LinkSentence, Settings, TileSentence, settings_block
-from tilenca.shapes import Shape, Task
+from tilenca.shapes import Shape, Task, opposite
 from tilenca.telemetry import Heard, LineReader
 
 SLICE_S = 0.05
@@ -25,7 +25,6 @@ PATIENCE_S = 3.0
 # The sentence that tells of an update follows the display by less than this, and the next update later.
 TELLING_MS = 5.0
 FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
-OFFSETS = (1, 2)  # each cable once, from its western or northern tile: sides E and S
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def firmware_settings(elf: Path) -> Settings | None:
     """The settings a firmware has when its EEPROM is empty, asked of one tile; None if it does not say hello.
 
     Raises:
-        BuildError: the image cannot be used.
+        BuildError, UsageError: the image cannot be used, or the emulator is not built.
         TilencaError: the firmware stopped at a fault.
     """
     reader = LineReader()
@@ -81,9 +80,9 @@ def cables(shape: Shape) -> list[Link]:
     """One link for every pair of neighbouring tiles, numbered in reading order."""
     neighbours = shape.neighbours()
     return [
-        (tile, side, neighbours[tile][side], (side + 2) % 4)
+        (tile, side, neighbours[tile][side], opposite(side))
         for tile in range(len(neighbours))
-        for side in OFFSETS
+        for side in (EAST, SOUTH)  # each cable once, from its western or northern tile
         if neighbours[tile][side] >= 0
     ]
 
@@ -104,7 +103,7 @@ class Emulation:
             defaults: what `firmware_settings` said; with None tiles get no settings and no number.
 
         Raises:
-            BuildError: the image cannot be used, or the emulator is not built.
+            BuildError, UsageError: the image cannot be used, or the emulator is not built.
         """
         self.task, self.shape, self.conditions = task, shape, conditions
         count = len(shape.cells)
@@ -114,6 +113,7 @@ class Emulation:
         self.array = Array(elf, count, cables(shape), self.ppm, self.switch_on_s, conditions.bootloader)
         self.period_ms = conditions.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [_Voice() for _ in range(count)]
+        self.hello: HelloSentence | None = None  # what the firmware says of itself, the same from every tile
         if self.period_ms is not None:
             for tile in self.array:
                 updates = defaults.updates if defaults else 0
@@ -143,6 +143,8 @@ class Emulation:
             voice.reports.append(heard.sentence)
         elif isinstance(heard.sentence, LinkSentence):
             voice.links[heard.sentence.side] = heard.sentence
+        elif isinstance(heard.sentence, HelloSentence):
+            self.hello = heard.sentence
 
     def done(self) -> bool:
         """Whether it has run for as long as its conditions ask."""
@@ -229,6 +231,7 @@ class Emulation:
         agreed_s = self.agreed_at_s()
         return {
             "shape": self.shape.name,
+            "model_id": self.hello and f"{self.hello.model_id:04X}",
             "simulated_s": round(self.array.time_s, 6),
             "wall_s": round(wall_s, 3),
             "tiles": [self._tile_report(tile) for tile in self.array],

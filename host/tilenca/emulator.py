@@ -33,12 +33,11 @@ from functools import cache
 from pathlib import Path
 from types import TracebackType
 
-from tilenca.errors import BuildError, TilencaError, UsageError
+from tilenca.errors import BuildError, TilencaError, UsageError, image_error
 from tilenca.paths import BUILD
 
 LIBRARY = BUILD / "emulator" / "libtilenca_emulator.so"
 NORTH, EAST, SOUTH, WEST = range(4)
-CLOCK_HZ = 16_000_000
 EEPROM_BYTES = 4096
 RECEIVE_CHUNK = 4096
 
@@ -268,7 +267,8 @@ class Array:
             bootloader: image for the boot section; with one, the tiles start there after every reset.
 
         Raises:
-            BuildError: the emulator is not built, or the image cannot be read or is for another chip.
+            BuildError: the emulator is not built.
+            BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
             UsageError: the lists do not fit the number of tiles.
         """
         self.handle: int | None = None
@@ -285,7 +285,7 @@ class Array:
             os.fsencode(image), boot, tiles, doubles(*ppm), doubles(*switch_on_s)
         )
         if not self.handle:
-            raise BuildError(library.tilenca_last_error().decode())
+            raise image_error(library.tilenca_last_error().decode())
         self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
         for link in links:
             self._link(link)

@@ -2,15 +2,15 @@
 
 import argparse
 import json
+import os
 import shutil
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from types import FrameType
 
 from rich.console import Console
 from rich.markup import escape
@@ -18,11 +18,13 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bars
 
 from tilenca import paths
+from tilenca.arguments import add_port_argument, count, positive
 from tilenca.avrdude import Progress, find_avrdude
 from tilenca.errors import BuildError
 from tilenca.ihex import check_image
-from tilenca.ports import add_port_argument, find_ports, warn
+from tilenca.ports import find_ports
 from tilenca.programming import Outcome, program_all
+from tilenca.streams import warn
 from tilenca.tables import table
 
 FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
@@ -34,33 +36,17 @@ TIMEOUT_S = 12.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add_port_argument(parser)
-    parser.add_argument("--jobs", type=_positive, metavar="N", help="boards at a time (default: all)")
+    parser.add_argument("--jobs", type=count, metavar="N", help="boards at a time (default: all)")
     parser.add_argument("--hex", type=Path, metavar="F", help="write this Intel HEX image; nothing is built")
     parser.add_argument("--no-build", action="store_true", help="write the image that is there")
     parser.add_argument(
         "--timeout",
-        type=_seconds,
+        type=positive,
         default=TIMEOUT_S,
         metavar="S",
         help="give a board up after S seconds without progress (default: %(default)g)",
     )
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 1")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0 < seconds < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds above 0")
-    return seconds
 
 
 def run(args: argparse.Namespace) -> int:
@@ -72,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
         build()
     size = check_image(image)
     warn(f"writing {image} ({size} bytes) to {len(names)} board{'s' * (len(names) != 1)} with {tool.program}")
-    with ending_like_ctrl_c(), _display(names) as display:
+    with _display(names) as display:
         outcomes = program_all(tool, image, names, args.jobs or len(names), args.timeout, display.show)
     if args.json:
         print(json.dumps({"tiles": [asdict(outcome) for outcome in outcomes]}, indent=2))
@@ -98,33 +84,26 @@ def build() -> None:
         raise BuildError("PlatformIO is not installed; run `make setup`, or name an image with --hex")
     warn("building the firmware")
     command = [pio, "run", "-e", paths.FIRMWARE_ENV]
-    done = subprocess.run(
+    # A process group of its own: what the build started ends with it.
+    with subprocess.Popen(
         command,
         cwd=paths.ROOT,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        check=False,
-    )
-    if done.returncode != 0:
-        sys.stderr.write(done.stdout.decode("utf-8", "replace"))
-        raise BuildError(f"`{' '.join(command)}` failed with status {done.returncode}; its output is above")
-
-
-@contextmanager
-def ending_like_ctrl_c() -> Iterator[None]:
-    """A polite kill and a closed terminal end the block as Ctrl-C does, so that no child is left behind."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    signals = (signal.SIGTERM, signal.SIGHUP)
-    before = [signal.signal(number, interrupt) for number in signals]
-    try:
-        yield
-    finally:
-        for number, handler in zip(signals, before, strict=True):
-            signal.signal(number, handler)
+        process_group=0,
+    ) as building:
+        try:
+            output, _ = building.communicate()
+        except BaseException:
+            with suppress(ProcessLookupError):
+                os.killpg(building.pid, signal.SIGKILL)
+            raise
+    if building.returncode != 0:
+        warn(output.decode("utf-8", "replace").rstrip("\n"))
+        raise BuildError(
+            f"`{' '.join(command)}` failed with status {building.returncode}; its output is above"
+        )
 
 
 class _Lines:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tilenca.errors import BuildError, UsageError
+from tilenca.errors import image_error
 
 # The stock stk500v2 bootloader owns the last 8 KiB of the ATmega2560's 256 KiB.
 APPLICATION_BYTES = 248 * 1024
@@ -67,32 +67,30 @@ def check_image(path: Path) -> int:
         The number of bytes it has.
 
     Raises:
-        BuildError: there is no such file.
-        UsageError: it is not valid, too large, empty, or holds what hangs a bootloader.
+        BuildError, UsageError: there is no such file, or it is not valid, too large, empty, or holds what
+            hangs a bootloader; see `image_error`.
     """
     try:
         memory = parse_hex(path.read_text(encoding="ascii"))
-    except FileNotFoundError as error:
-        raise BuildError(
-            f"{path}: no such file; build it with `pio run`, or name an image with --hex"
-        ) from error
     except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}; name an image with --hex") from error
+        raise image_error(
+            f"{path}: {error.strerror}; build it with `pio run`, or name an image with --hex"
+        ) from error
     except UnicodeDecodeError as error:
-        raise UsageError(
+        raise image_error(
             f"{path}: not an Intel HEX file; name the firmware.hex that `pio run` builds"
         ) from error
     except HexError as error:
-        raise UsageError(f"{path}:{error}; build it again with `pio run`") from error
+        raise image_error(f"{path}:{error}; build it again with `pio run`") from error
     if not memory:
-        raise UsageError(f"{path}: an image without a byte; build it again with `pio run`")
+        raise image_error(f"{path}: an image without a byte; build it again with `pio run`")
     if (last := max(memory)) >= APPLICATION_BYTES:
-        raise UsageError(
+        raise image_error(
             f"{path}: reaches address 0x{last:X}; below the Mega's bootloader there is room up to "
             f"0x{APPLICATION_BYTES - 1:X}: make the firmware smaller"
         )
     if (at := _find(memory, POISON)) is not None:
-        raise UsageError(
+        raise image_error(
             f"{path}: the bytes '!!!' at 0x{at:X} hang some Mega bootloaders; change what holds them"
         )
     return len(memory)

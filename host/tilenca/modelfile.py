@@ -6,6 +6,7 @@ A model is a directory: `model.json` (what it is), `weights.npz` (float and inte
 
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -16,12 +17,15 @@ from numpy.typing import NDArray
 
 from tilenca.errors import UsageError
 from tilenca.glyphs import GLYPHS
+from tilenca.protocol import MAX_CHANNELS as MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
 from tilenca.protocol import crc16
 
 FORMAT = 1
 TAPS = 5  # own state, then N, E, S, W
-MAX_CHANNELS = 51  # 5 * channels must fit the firmware's uint8_t counters
 MAX_WIDTH = 127
+
+# All that numpy and zipfile raise on bytes that are no archive of arrays.
+DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error)
 
 
 @dataclass(frozen=True)
@@ -105,13 +109,13 @@ def load_model(directory: Path) -> Model:
         raise UsageError(
             f"{about_path}: {error.strerror}; give a directory that `tilenca train` wrote, like models/digits"
         ) from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
     if not isinstance(about, dict) or about.get("format") != FORMAT:
         found = about.get("format") if isinstance(about, dict) else None
         raise UsageError(f"{about_path}: model format {found!r}, this tilenca reads {FORMAT}; train again")
     dimensions, labels = _description(about_path, about)
-    model = Model(labels, dimensions, *_weights(weights_path, dimensions), about.get("made") or {})
+    model = Model(labels, dimensions, *_weights(weights_path, dimensions), _made(about_path, about))
     if about.get("model_id") != f"{model.model_id:04X}":
         raise UsageError(
             f"{weights_path}: the weights have id {model.model_id:04X}, {about_path.name} says "
@@ -132,7 +136,7 @@ def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[s
         )
     dimensions = Dimensions(*widths)
     labels = about.get("labels")
-    if not isinstance(labels, list) or not labels or not all(label in GLYPHS for label in labels):
+    if not (isinstance(labels, list) and labels and all(isinstance(x, str) and x in GLYPHS for x in labels)):
         raise UsageError(f"{path}: labels must be a list of characters that a 7-segment digit can show")
     if len(labels) > dimensions.max_classes or len(set(labels)) != len(labels):
         raise UsageError(
@@ -141,28 +145,40 @@ def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[s
     return dimensions, tuple(labels)
 
 
+def _made(path: Path, about: dict[str, Any]) -> dict[str, Any]:
+    """How the model was made: free form, but for the recipe, whose settings decide how it is simulated."""
+    made = about.get("made", {})
+    if not isinstance(made, dict) or not isinstance(made.get("recipe", {}), dict):
+        raise UsageError(f"{path}: made, and made.recipe, must be objects; train or check out again")
+    return made
+
+
 def _weights(
     path: Path, dimensions: Dimensions
 ) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[np.float32]]]:
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        archive = np.load(path, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise ValueError("not an .npz archive")
+        with archive:
             arrays = {name: archive[name] for name in archive.files}
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror or error}; train or check out again") from error
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+    except DAMAGED as error:
         raise UsageError(f"{path}: damaged ({error}); train or check out again") from error
     integer: dict[str, NDArray[Any]] = {}
     floats: dict[str, NDArray[np.float32]] = {}
     for name, shape in dimensions.shapes().items():
         wanted = np.dtype(np.int8 if name.startswith("w") else "<i2")
-        exact, real = arrays.get(f"int_{name}"), arrays.get(name)
-        if (
-            exact is None
-            or real is None
-            or exact.shape != shape
-            or real.shape != shape
-            or exact.dtype != wanted
-        ):
-            raise UsageError(f"{path}: array '{name}' is missing or not {shape} of {wanted}; train again")
-        integer[name], floats[name] = exact, real.astype(np.float32)
+        integer[name] = _array(path, arrays, f"int_{name}", shape, wanted)
+        floats[name] = _array(path, arrays, name, shape, np.dtype("<f4"))
     return integer, floats
+
+
+def _array(
+    path: Path, arrays: dict[str, Any], name: str, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> NDArray[Any]:
+    array = arrays.get(name)
+    if not isinstance(array, np.ndarray) or array.shape != shape or array.dtype != dtype:
+        raise UsageError(f"{path}: array '{name}' is missing or not {shape} of {dtype}; train again")
+    return array

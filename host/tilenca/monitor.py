@@ -8,22 +8,26 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Protocol
 
 from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from tilenca.errors import UsageError
+from tilenca.arguments import add_port_argument, not_negative
+from tilenca.errors import NoDeviceError
 from tilenca.fleetview import live_table, log_line, summary
 from tilenca.portreader import PortReader
-from tilenca.ports import add_port_argument, find_ports, warn
+from tilenca.ports import MAGIC, Port, find_ports
 from tilenca.protocol import HelloSentence
-from tilenca.recording import format_event, paced, read_recording
+from tilenca.recording import Recorder, format_event, paced, read_recording
+from tilenca.streams import warn
 from tilenca.telemetry import Event, Fleet, Heard, PortNews, as_json
 
 TICK_S = 0.2
 LOG_LINES = 8
+# How long patterns that match nothing may do so: an emulation is up in a second or two.
+PATIENCE_S = 8.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_port_argument(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
     parser.add_argument(
-        "--seconds", type=_not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
+        "--seconds", type=not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
     )
     storage = parser.add_mutually_exclusive_group()
     storage.add_argument(
@@ -40,21 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     storage.add_argument("--replay", type=Path, metavar="F", help="show a recording instead of reading ports")
     parser.add_argument(
         "--speed",
-        type=_not_negative,
+        type=not_negative,
         default=1.0,
         metavar="X",
         help="replay X times as fast; 0: at once (default: 1)",
     )
-
-
-def _not_negative(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = -1.0
-    if not 0 <= number < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 0")
-    return number
 
 
 def run(args: argparse.Namespace) -> int:
@@ -63,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         with ExitStack() as stack:
             source = _replay(args) if args.replay else _listen(args, stack)
-            record = stack.enter_context(_recording(args.record)) if args.record else None
+            record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
             display: Display = _JsonLines() if args.json else _display(fleet, stack)
             _show(source, fleet, display, record, args.seconds)
     finally:
@@ -83,7 +77,7 @@ def _show(
     source: Iterator[tuple[float, list[Event]]],
     fleet: Fleet,
     display: Display,
-    record: TextIO | None,
+    record: Recorder | None,
     seconds: float | None,
 ) -> None:
     began_s: float | None = None
@@ -94,14 +88,13 @@ def _show(
         for event in events:
             fleet.take(event)
         if record and events:
-            record.writelines(map(format_event, events))
-            record.flush()
+            record.write(map(format_event, events))
         display.show(now_s, events)
 
 
 def _listen(args: argparse.Namespace, stack: ExitStack) -> Iterator[tuple[float, list[Event]]]:
     """Events from the ports, which are found (or not) before anything is shown."""
-    names = [port.name for port in find_ports(args.port)]
+    names = [port.name for port in _awaited_ports(args.port)]
     reader = stack.enter_context(PortReader(names))
 
     def events() -> Iterator[tuple[float, list[Event]]]:
@@ -112,6 +105,25 @@ def _listen(args: argparse.Namespace, stack: ExitStack) -> Iterator[tuple[float,
     return events()
 
 
+def _awaited_ports(patterns: Sequence[str]) -> list[Port]:
+    """The ports, for which patterns get a while: tiles that were just started may still be coming."""
+    end_s = time.monotonic() + PATIENCE_S
+    told, before = False, 0
+    while True:
+        try:
+            found = find_ports(patterns)
+            if not told or len(found) == before:
+                return found
+            before = len(found)  # they come one after the other: look once more
+        except NoDeviceError:
+            if not any(map(MAGIC.search, patterns)) or time.monotonic() >= end_s:
+                raise
+        if not told:
+            warn(f"nothing matches {' '.join(patterns)} yet; waiting up to {PATIENCE_S:g} s for it")
+            told = True
+        time.sleep(TICK_S)
+
+
 def _replay(args: argparse.Namespace) -> Iterator[tuple[float, list[Event]]]:
     """Events from a recording, of the ports that match."""
     chosen = (
@@ -120,15 +132,6 @@ def _replay(args: argparse.Namespace) -> Iterator[tuple[float, list[Event]]]:
         if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port)
     )
     return paced(chosen, args.speed, TICK_S)
-
-
-def _recording(path: Path) -> TextIO:
-    try:
-        return path.open("a", encoding="ascii")
-    except OSError as error:
-        raise UsageError(
-            f"{path}: {error.strerror}; name a file that can be written with --record"
-        ) from error
 
 
 class _JsonLines:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from tilenca.errors import TilencaError
 from tilenca.ports import is_pty
 
 
@@ -67,13 +68,15 @@ def port_lock(name: str, user: str) -> Iterator[int]:
 
     Raises:
         PortBusyError: it is taken.
+        TilencaError: the lock cannot be made.
     """
-    folder = Path(tempfile.gettempdir()) / "tilenca-locks"
-    if not folder.exists():
-        folder.mkdir(exist_ok=True)
-        folder.chmod(0o1777)  # shared by the users of this machine, like /tmp itself
-    path = folder / os.path.realpath(name).strip("/").replace("/", "-")
-    descriptor = _open_shared(path)
+    path = Path(tempfile.gettempdir()) / "tilenca-locks" / os.path.realpath(name).strip("/").replace("/", "-")
+    try:
+        descriptor = _open_shared(path)
+    except OSError as error:
+        raise TilencaError(
+            f"{path}: {error.strerror}, but ports are locked there; remove {path.parent} or set TMPDIR"
+        ) from error
     try:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -87,10 +90,13 @@ def port_lock(name: str, user: str) -> Iterator[int]:
 
 
 def _open_shared(path: Path) -> int:
-    """A file that every user may lock.
+    """A file that every user may lock, in a folder of such files.
 
     Without O_CREAT first: Linux refuses it for the files of others in shared folders.
     """
+    if not path.parent.exists():
+        path.parent.mkdir(exist_ok=True)
+        path.parent.chmod(0o1777)  # shared by the users of this machine, like /tmp itself
     flags = os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW
     try:
         return os.open(path, flags)

@@ -3,13 +3,11 @@
 One board is one character device, however many names lead to it, so that no two programs are started on it.
 """
 
-import argparse
 import glob
 import grp
 import os
 import re
 import stat
-import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -154,19 +152,3 @@ def denial(name: str) -> str | None:
         group = "dialout"
     group = "dialout" if group == "root" else group
     return f"permission denied; join its group with `sudo usermod -aG {group} $USER`, then log in again"
-
-
-def add_port_argument(parser: argparse.ArgumentParser) -> None:
-    """The `--port` option that all fleet commands share."""
-    parser.add_argument(
-        "--port",
-        action="append",
-        default=[],
-        metavar="GLOB",
-        help="a port or a quoted pattern, such as '/dev/ttyACM*', repeatable (default: Mega 2560s on USB)",
-    )
-
-
-def warn(message: str) -> None:
-    """One line of chatter on stderr."""
-    print(message, file=sys.stderr, flush=True)

@@ -20,7 +20,6 @@ MAX_CHANNELS = 51
 MAX_PAYLOAD = HEADER_SIZE + MAX_CHANNELS + CRC_SIZE
 MESSAGE_MAX = 127
 MESSAGE_OFFSET = 128
-LINK_BAUD = 38400
 
 # Silence (section 2).
 SILENT_PERIODS = 4
@@ -251,35 +250,6 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
         age = int(age_ms) if age_ms else None
         return LinkSentence(int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign, age)
     return None
-
-
-class SentenceReader:
-    """Finds the good sentences in a stream of bytes, whatever lies between them.
-
-    Attributes:
-        rejected: sequences that began like a sentence but were damaged or of an unknown name.
-    """
-
-    def __init__(self) -> None:
-        self.rejected = 0
-        self._buffer = b""
-
-    def feed(self, data: bytes) -> list[Sentence]:
-        """The sentences that `data` completed, in order; never raises."""
-        _, *pieces = (self._buffer + data).split(b"$")
-        self._buffer = b""
-        # The last piece may still grow, until its line ends or it is longer than any sentence.
-        if pieces and b"\n" not in pieces[-1] and len(pieces[-1]) < MAX_SENTENCE:
-            self._buffer = b"$" + pieces.pop()
-        found = []
-        for piece in pieces:
-            match = _SENTENCE.match(b"$" + piece)
-            sentence = parse_sentence(match[0]) if match else None
-            if sentence is None:
-                self.rejected += 1
-            else:
-                found.append(sentence)
-        return found
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,11 @@ A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port"
 import json
 import time
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Self
 
-from tilenca.errors import UsageError
+from tilenca.errors import TilencaError, UsageError
 from tilenca.protocol import parse_sentence
 from tilenca.telemetry import Event, Heard, PortNews
 
@@ -19,14 +21,56 @@ ENCODING = "latin-1"
 DUE_S = 1e-3
 
 
-def format_event(event: Event) -> str:
-    """The event as one line, newline included."""
+def as_record(event: Event) -> dict[str, object]:
+    """The event as one JSON object."""
     about: dict[str, object] = {"time": round(event.time_s, 6), "port": event.port}
     if isinstance(event, Heard):
         about["raw"] = event.raw.decode(ENCODING)
     else:
         about |= {"open": event.is_open, "reason": event.reason}
-    return json.dumps(about) + "\n"
+    return about
+
+
+def format_event(event: Event) -> str:
+    """The event as one line, newline included."""
+    return json.dumps(as_record(event)) + "\n"
+
+
+class Recorder:
+    """A recording in the making; use it as a context manager."""
+
+    def __init__(self, path: Path, mode: str) -> None:
+        """Opens the file, to write it anew (`w`) or to append (`a`).
+
+        Raises:
+            UsageError: it cannot be opened.
+        """
+        self._path = path
+        try:
+            self._file = path.open(mode, encoding="ascii")
+        except OSError as error:
+            raise UsageError(f"{path}: {error.strerror}; give --record a file that can be written") from error
+
+    def write(self, lines: Iterable[str]) -> None:
+        """Writes whole lines, at once.
+
+        Raises:
+            TilencaError: there is no room.
+        """
+        try:
+            self._file.writelines(lines)
+            self._file.flush()
+        except OSError as error:
+            raise TilencaError(
+                f"{self._path}: {error.strerror}; the recording ends here, give --record another file"
+            ) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *about: object) -> None:
+        with suppress(OSError):  # what could not be written has been told
+            self._file.close()
 
 
 def parse_event(line: str) -> Event:

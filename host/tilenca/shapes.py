@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tilenca.errors import UsageError
 from tilenca.glyphs import GLYPHS
+from tilenca.protocol import SIDE_LETTERS
 
 TILE = "#"
 EMPTY = ".", " "
@@ -20,8 +21,8 @@ EMPTY = ".", " "
 _HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
 _GRID = re.compile(r"""\s*grid\s*=\s*(?P<quotes>\"{3}|'{3})?(?P<row>.*?)\s*$""")
 
-# Neighbour order everywhere: N, E, S, W; opposite(side) is (side + 2) % 4.
-SIDES = "NESW"
+# Neighbour order everywhere, and (rows, columns) to each neighbour.
+SIDES = SIDE_LETTERS
 STEPS: tuple[tuple[int, int], ...] = ((-1, 0), (0, 1), (1, 0), (0, -1))
 
 
@@ -78,6 +79,11 @@ class Task:
                 return shape
         names = " ".join(shape.name for shape in self.shapes)
         raise UsageError(f"{self.path}: no shape '{name}'; it has: {names}")
+
+
+def opposite(side: int) -> int:
+    """The side of the neighbour on `side` that touches this tile."""
+    return (side + 2) % len(SIDES)
 
 
 def cells_of(rows: Iterable[str]) -> tuple[tuple[int, int], ...]:
@@ -180,7 +186,9 @@ def _rows(where: str, grid_where: str, grid_line: int, label: str, grid: object)
     if not isinstance(grid, str):
         raise UsageError(f'{where}: shape \'{label}\' has no grid; add grid = """..."""')
     rows = [row.rstrip("\r") for row in grid.split("\n")]
-    numbered = [(index, row) for index, row in enumerate(rows) if row.strip()]
+    drawn = [index for index, row in enumerate(rows) if row.strip()]
+    # Blank rows above and below are how the text is laid out; between others they are part of the drawing.
+    numbered = [(index, rows[index]) for index in range(drawn[0], drawn[-1] + 1)] if drawn else []
     for index, row in numbered:
         line = f"{grid_where.rsplit(':', 1)[0]}:{grid_line + index}" if grid_line else where
         for column, mark in enumerate(row):

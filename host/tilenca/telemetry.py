@@ -91,7 +91,7 @@ def type_of(sentence: Sentence) -> str:
 
 
 def as_json(heard: Heard) -> dict[str, Any]:
-    """A good line as one JSON object; `state` is hex as on the wire.
+    """A good line as one JSON object; `state` and `model_id` are hex as on the wire.
 
     Raises:
         ValueError: the line is damaged.
@@ -99,6 +99,8 @@ def as_json(heard: Heard) -> dict[str, Any]:
     if heard.sentence is None:
         raise ValueError("a damaged line has no fields")
     fields = {k: v.hex().upper() if isinstance(v, bytes) else v for k, v in vars(heard.sentence).items()}
+    if isinstance(heard.sentence, HelloSentence):
+        fields["model_id"] = f"{heard.sentence.model_id:04X}"
     tile = fields.pop("tile")
     kind = type_of(heard.sentence)
     return {"time": round(heard.time_s, 3), "port": heard.port, "tile": tile, "type": kind, "fields": fields}

@@ -1,6 +1,11 @@
 """`tilenca emulate` as a user types it, on the firmware that was built."""
 
 import json
+import os
+import re
+import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +48,11 @@ def test_json_of_one_shape_is_one_object(capsys: pytest.CaptureFixture[str]) -> 
     status, out, _ = emulate(capsys, "--shape", "1", "--json")
     report = json.loads(out)
     assert set(report) == {
-        "shape", "simulated_s", "wall_s", "tiles", "all_right", "agreed_at_s", "agreed_at_update",
+        "shape", "model_id", "simulated_s", "wall_s", "tiles", "all_right", "agreed_at_s", "agreed_at_update",
     }  # fmt: skip
     assert status == 0
     assert report["shape"] == "1"
+    assert re.fullmatch("[0-9A-F]{4}", report["model_id"])
     assert report["all_right"] is True
     assert [(tile["id"], tile["row"], tile["col"]) for tile in report["tiles"]] == [
         (i + 1, i, 0) for i in range(5)
@@ -80,8 +86,11 @@ def test_several_shapes_come_in_the_order_asked_for(capsys: pytest.CaptureFixtur
 def test_the_picture_shows_every_digit_and_a_verdict(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = emulate(capsys, "--shape", "1")
     assert status == 0
-    assert out.splitlines()[:6] == ["", "  |", "  |"] * 2
+    top, side, bottom = "╭─────╮", "├─────┤", "╰─────╯"
+    one = ["│   ╻ │", "│   ┃ │", "│   ╹ │"]
+    assert out.splitlines()[:21] == [top, *one, *4 * [side, *one], bottom]
     assert "1: all 5 tiles show 1, since" in out
+    assert "all 5 tiles" not in err, "the verdict is said once"
     assert "1 of 1 shapes right" in out
     assert "times real time" in err
 
@@ -126,17 +135,55 @@ def test_an_unknown_shape_is_told_which_there_are(capsys: pytest.CaptureFixture[
     assert "no shape 'Q'; it has: 0 1 2 3 4 5 6 7 8 9" in err
 
 
-def test_bad_images_end_with_status_4(
+def test_bad_images_that_were_given_are_usage_errors(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, avr: Compile
 ) -> None:
-    status, _, err = emulate(capsys, "--elf", tmp_path / "none.elf")
+    other = avr("int main(void) { for (;;) { } }", mcu="atmega328p")
+    for wrong, fact in {
+        ("--elf", tmp_path / "none.elf"): "none.elf: No such file or directory; run `make demo` or `pio run`",
+        ("--elf", tmp_path): f"{tmp_path}: not a file; run",
+        ("--elf", other): "AVR architecture 5",
+        ("--serve", tmp_path / "tiles", "--bootloader", tmp_path / "none"): "give --bootloader an ELF or",
+    }.items():
+        status, out, err = emulate(capsys, "--shape", "1", *wrong)
+        assert (status, out) == (2, "")
+        assert fact in err
+        assert err.count("\n") == 1
+
+
+def test_a_missing_build_of_our_own_ends_with_status_4(capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, err = emulate(capsys, "--shape", "1", "--elf", FIRMWARE_ELF.with_name("none.elf"))
     assert status == 4
     assert "pio run" in err
-    other = avr("int main(void) { for (;;) { } }", mcu="atmega328p")
-    status, _, err = emulate(capsys, "--shape", "1", "--elf", other)
-    assert status == 4
-    assert "AVR architecture 5" in err
-    assert err.count("\n") == 1
+
+
+def test_shapes_the_firmware_was_not_trained_on_name_the_model_and_the_remedy(
+    capsys: pytest.CaptureFixture[str], row: Path
+) -> None:
+    status, out, err = emulate(capsys, "--shapes", row, "--seconds", "0.3", "--boot-spread", "0")
+    assert status == 1
+    assert re.search("1: WRONG, . of 3 tiles do not show 1 with model [0-9A-F]{4}: tile ", out)
+    assert re.search(
+        f"the firmware's model [0-9A-F]{{4}} knows 10 labels, {row} has 1 \\(1\\); export the", err
+    )
+
+
+@pytest.mark.parametrize(
+    "ignored",
+    [
+        ("--serve", "x", "--record", "y"),
+        ("--serve", "x", "--json"),
+        ("--serve", "x", "--updates", "3"),
+        ("--bootloader", "none"),
+        ("--keep-running",),
+        ("--watch", "--json"),
+    ],
+)
+def test_options_that_would_be_ignored_are_refused(
+    capsys: pytest.CaptureFixture[str], ignored: tuple[str, ...]
+) -> None:
+    status, out, err = emulate(capsys, "--shape", "1", *ignored)
+    assert (status, out, err.count("\n")) == (2, "", 1)
 
 
 def test_a_firmware_that_never_tells_is_given_up(capsys: pytest.CaptureFixture[str], avr: Compile) -> None:
@@ -148,9 +195,58 @@ def test_a_firmware_that_never_tells_is_given_up(capsys: pytest.CaptureFixture[s
 
 @pytest.mark.parametrize(
     "wrong",
-    [("--seconds", "0"), ("--updates", "0"), ("--period-ms", "5"), ("--ppm", "-1"), ("--seconds", "x")],
+    [
+        ("--seconds", "0"),
+        ("--seconds", "x"),
+        ("--seconds", "1e9"),
+        ("--updates", "0"),
+        ("--period-ms", "5"),
+        ("--ppm", "-1"),
+        ("--ppm", "100001"),
+        ("--boot-spread", "3601"),
+    ],
 )
 def test_numbers_out_of_range_are_usage_errors(
     capsys: pytest.CaptureFixture[str], wrong: tuple[str, str]
 ) -> None:
     assert emulate(capsys, "--shape", "1", *wrong)[0] == 2
+
+
+def test_a_record_without_room_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, err = emulate(capsys, "--shape", "1", "--updates", "3", "--record", "/dev/full")
+    assert status == 1
+    assert err.splitlines()[-1].startswith("tilenca: /dev/full: No space left on device; ")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interrupt_ends_a_batch_with_130(number: signal.Signals) -> None:
+    # Ten shapes: the first has been told of, most are still to come.
+    command = [sys.executable, "-m", "tilenca.cli", "emulate", "--seconds", "3"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        assert running.stderr.readline().startswith("0: 3.0 s emulated")
+        running.send_signal(number)
+        out, err = running.communicate(timeout=60)
+    assert (running.returncode, out) == (130, "")
+    assert err.splitlines()[-1] == "tilenca: interrupted"
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("redirection", "status", "said"),
+    [
+        (">/dev/full", 1, "No space left on device"),
+        (">&-", 1, "standard output is closed"),
+        ("2>&-", 0, ""),
+        ("| :", 1, ""),  # the pictures were not all shown
+    ],
+)
+def test_streams_that_are_full_closed_or_left(redirection: str, status: int, said: str) -> None:
+    script = f'"$@" --shape 1 --updates 3 {redirection}'
+    words = ["bash", "-o", "pipefail", "-c", script, "bash", sys.executable, "-m", "tilenca.cli", "emulate"]
+    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False, env=environment)
+    assert done.returncode == status, done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "Exception ignored" not in done.stderr

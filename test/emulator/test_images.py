@@ -1,13 +1,15 @@
 """Loading ELF and Intel HEX files: good ones, wrong ones, damaged ones, and noise."""
 
 import random
+from ctypes import CDLL, c_char, c_char_p, c_double, c_int, c_uint, c_uint64, c_void_p
 from pathlib import Path
 
 import pytest
 from conftest import Compile, run_tool
 
-from tilenca.emulator import Array
+from tilenca.emulator import LIBRARY, Array
 from tilenca.errors import BuildError, UsageError
+from tilenca.paths import FIRMWARE_ELF
 
 PROGRAM = "EEMEM uint8_t stored = 0x42; int main(void) { result[0] = 7; for (;;) { } }"
 
@@ -27,7 +29,7 @@ def test_intel_hex_gives_the_same_flash(avr: Compile, tmp_path: Path) -> None:
 
 def refused(path: Path, content: bytes) -> str:
     path.write_bytes(content)
-    with pytest.raises(BuildError) as caught:
+    with pytest.raises(UsageError) as caught:
         Array(path)
     message = str(caught.value)
     assert message.startswith(str(path))
@@ -51,8 +53,10 @@ def test_refusals_name_file_fact_and_remedy(avr: Compile, tmp_path: Path) -> Non
     assert "empty" in refused(bad, b"")
     assert ":1: not a sound Intel HEX record" in refused(bad, b":0000000\n")
     assert "no end record" in refused(bad, b":0100000001FE\n")
-    with pytest.raises(BuildError, match="No such file"):
+    with pytest.raises(UsageError, match="No such file"):
         Array(tmp_path / "missing.elf")
+    with pytest.raises(BuildError, match="No such file"):  # what we build ourselves
+        Array(FIRMWARE_ELF.with_name("missing.elf"))
 
 
 def test_an_object_file_is_no_program(avr: Compile, tmp_path: Path) -> None:
@@ -80,7 +84,7 @@ def test_damaged_images_are_refused_or_loaded_but_never_crash(
         try:
             with Array(victim):
                 outcomes.add("loaded")
-        except BuildError as error:
+        except UsageError as error:
             outcomes.add("refused in one line" if "\n" not in str(error) else str(error))
     # Every record of a HEX file has its checksum; most bytes of an ELF file are not checked by anything.
     assert outcomes == ({"loaded", "refused in one line"} if kind == "elf" else {"refused in one line"})
@@ -94,3 +98,19 @@ def test_arguments_that_do_not_fit_are_refused(avr: Compile) -> None:
         Array(elf, 2, [(0, 1, 2, 3)])
     with pytest.raises(UsageError, match="beyond"):
         Array(elf)[0].read_memory(0x2000, 0x300)
+
+
+@pytest.mark.parametrize(
+    ("port", "bit"), [(b"I", 0), (b"M", 0), (b"b", 5), (b"@", 0), (b"\xff", 0), (b"B", 8)]
+)
+def test_pins_that_do_not_exist_are_refused(avr: Compile, port: bytes, bit: int) -> None:
+    library = CDLL(str(LIBRARY))
+    library.tilenca_last_error.restype = c_char_p
+    library.tilenca_tile_duty.restype = c_double
+    array, pin = Array(avr(PROGRAM)), (c_char(port), c_uint(bit))
+    tile = (c_void_p(array.handle), c_uint(0))
+    assert library.tilenca_tile_pin(*tile, *pin) == -1
+    assert library.tilenca_tile_duty(*tile, *pin) == -1
+    assert library.tilenca_tile_hold_pin(*tile, *pin, c_int(0)) == -1
+    assert library.tilenca_tile_push_edge(*tile, *pin, c_uint64(100), c_int(0)) == -1
+    assert b"no pin P" in library.tilenca_last_error()

@@ -38,8 +38,8 @@ class Server:
         assert self.process.stderr is not None
         assert "serving 2 tiles" in self.process.stderr.readline()
 
-    def stop(self) -> int:
-        self.process.send_signal(signal.SIGINT)
+    def stop(self, number: signal.Signals = signal.SIGINT) -> int:
+        self.process.send_signal(number)
         return self.process.wait(TIMEOUT_S)
 
 
@@ -75,9 +75,19 @@ def test_bytes_pass_both_ways(echo: Server, directory: Path) -> None:
         os.close(port)
 
 
-def test_an_interrupt_leaves_nothing_behind(echo: Server, directory: Path) -> None:
-    assert echo.stop() == 130
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interrupt_leaves_nothing_behind(echo: Server, directory: Path, number: signal.Signals) -> None:
+    assert echo.stop(number) == 130
     assert not directory.exists()
+
+
+def test_a_second_server_leaves_the_first_one_its_links(echo: Server, directory: Path) -> None:
+    before = {path.name: path.readlink() for path in directory.iterdir()}
+    command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shape", "1", "--serve", str(directory)]
+    second = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    assert (second.returncode, second.stderr.count("\n")) == (2, 1)
+    assert "another `tilenca emulate` serves its tiles there" in second.stderr
+    assert {path.name: path.readlink() for path in directory.iterdir()} == before
 
 
 def test_links_of_a_killed_run_are_replaced_and_other_files_kept(avr: Compile, directory: Path) -> None:

@@ -4,14 +4,16 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
+from tilenca import monitor
 from tilenca.cli import main
-from tilenca.errors import NoDeviceError
+from tilenca.errors import NoDeviceError, TilencaError
 from tilenca.portlock import PortBusyError, holders, port_lock
 from tilenca.ports import find_ports, megas, natural_key
 
@@ -91,8 +93,13 @@ def test_a_named_port_that_is_missing_is_told_and_stops_no_other(
 @pytest.mark.parametrize("command", ["devices", "flash", "monitor"])
 @pytest.mark.parametrize("pattern", ["ttyACM*", "ttyACM0"])
 def test_no_device_exits_with_3_and_a_remedy(
-    command: str, pattern: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: str,
+    pattern: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(monitor, "PATIENCE_S", 0.0)
     assert main([command, "--port", str(tmp_path / pattern)]) == 3
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -139,3 +146,12 @@ def test_a_program_that_has_the_port_open_is_named(pty: str) -> None:
         child.communicate(b"\n", timeout=60)
     assert held[pty].endswith(f"(pid {child.pid})")
     assert holders([pty]) == {}, "neither this process nor a dead one holds it"
+
+
+def test_locks_that_cannot_be_kept_are_told(
+    pty: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tilenca-locks").write_text("a file of somebody's")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.raises(TilencaError, match=r"tilenca-locks.*Not a directory.*TMPDIR"), port_lock(pty, "us"):
+        pass

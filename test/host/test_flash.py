@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -182,6 +183,53 @@ def test_an_interrupt_exits_with_130_and_leaves_nothing_running(
     results = {tile["port"]: tile["result"] for tile in json.loads(output)["tiles"]}
     assert results == {stuck.port: "interrupted", waiting.port: "interrupted"}
     assert "Traceback" not in chatter
+
+
+def test_nobody_listening_to_the_chatter_stops_no_work(firmware: Path) -> None:
+    listener, chatter = os.pipe()
+    os.close(listener)
+    with StandIn() as board:
+        done = subprocess.run(
+            command(firmware, board.port),
+            stdout=subprocess.PIPE,
+            stderr=chatter,
+            text=True,
+            timeout=LIMIT_S,
+            check=False,
+        )
+        assert board.flash[: len(DATA)] == DATA
+    os.close(chatter)
+    assert done.returncode == 0
+    assert [tile["result"] for tile in json.loads(done.stdout)["tiles"]] == ["flashed"]
+
+
+def test_an_interrupted_build_leaves_nothing_running(tmp_path: Path) -> None:
+    """The "pio" here starts a compiler of its own, as the real one does, and says both their numbers."""
+    told = tmp_path / "told"
+    os.mkfifo(told)
+    program = f"sleep 600 & echo $$ $! > {shlex.quote(str(told))}; wait"
+    (tmp_path / "pio").write_text(f"#!/bin/sh\n{program}\n")
+    (tmp_path / "pio").chmod(0o755)
+    # `pio` is looked for beside the interpreter.
+    script = "import sys; sys.executable = sys.argv.pop(1); from tilenca.cli import main; sys.exit(main())"
+    with StandIn() as board:
+        interpreter = str(tmp_path / "python")
+        words = [sys.executable, "-c", script, interpreter, "flash", "--port", board.port]
+        flashing = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
+        started = [Path("/proc") / number for number in told.read_text().split()]
+        assert all(process.exists() for process in started)
+        flashing.send_signal(signal.SIGTERM)
+        _, chatter = flashing.communicate(timeout=LIMIT_S)
+    assert flashing.returncode == 130, chatter
+    assert [_runs(process) for process in started] == [False, False]
+
+
+def _runs(process: Path) -> bool:
+    """Whether a process runs; one that has ended may wait for its parent to notice (state Z)."""
+    try:
+        return (process / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_a_failed_build_shows_its_output_and_exits_with_4(

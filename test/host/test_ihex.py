@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tilenca import paths
 from tilenca.errors import BuildError, TilencaError, UsageError
 from tilenca.ihex import APPLICATION_BYTES, HexError, check_image, parse_hex
 
@@ -85,9 +86,11 @@ def test_an_image_up_to_the_bootloader_is_accepted(tmp_path: Path) -> None:
     assert check_image(path) == 16
 
 
-def test_a_missing_image_is_a_build_error(tmp_path: Path) -> None:
-    with pytest.raises(BuildError, match="--hex"):
+def test_a_missing_image_is_a_usage_error_if_given_and_a_build_error_if_ours(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="--hex"):
         check_image(tmp_path / "none.hex")
+    with pytest.raises(BuildError, match="pio run"):
+        check_image(paths.FIRMWARE_ELF.with_name("none.hex"))
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00", None])

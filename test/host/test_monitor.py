@@ -286,6 +286,22 @@ def test_a_record_that_cannot_be_written_is_refused(
     assert "--record" in capsys.readouterr().err
 
 
+def test_a_record_without_room_ends_it_with_one_line(
+    tiles: list[Tile], capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["monitor", "--seconds", "0.1", "--record", "/dev/full", *ports(tiles[0])]) == 1
+    assert capfd.readouterr().err.splitlines()[-1].startswith("tilenca: /dev/full: No space left on device; ")
+
+
+def test_patterns_may_match_later_and_names_may_not(tiles: list[Tile], tmp_path: Path) -> None:
+    with Monitor("--port", f"{tmp_path}/*") as monitor:
+        monitor.read_until(monitor.process.stderr, lambda line: line.startswith("nothing matches"))
+        (tmp_path / "tile").symlink_to(tiles[0].port)
+        wait_open(monitor, monitor.process.stdout, 1)
+        monitor.interrupt()
+    assert main(["monitor", "--port", f"{tmp_path}/other"]) == 3
+
+
 def test_bytes_cannot_disturb_the_terminal() -> None:
     assert printable(b"\x1b[2J\xff\n" + b"x" * 100).isprintable()
 

@@ -15,7 +15,6 @@ from tilenca.protocol import (
     HelloSentence,
     LinkSentence,
     Sentence,
-    SentenceReader,
     Settings,
     TileSentence,
     checksum,
@@ -221,37 +220,6 @@ def test_a_good_checksum_alone_is_no_sentence(line: bytes) -> None:
 )
 def test_wrong_fields_with_a_good_checksum_are_refused(body: bytes) -> None:
     assert parse_sentence(b"$%s*%02X" % (body, checksum(body))) is None
-
-
-noise = st.binary(max_size=250).map(lambda data: data.replace(b"$", b"?")) | st.sampled_from(
-    [b"$", b"$TILE,1,", b"$TILE,1*00\r\n", b"*5A\r\n", b"\r\n", b"$" * 300, b"$LINK,1,2,N,3,4,5,6,7,8*"]
-)
-
-
-@given(st.lists(sentences | noise, max_size=12), st.data())
-def test_good_sentences_between_anything_are_all_found(
-    parts: list[Sentence | bytes], data: st.DataObject
-) -> None:
-    stream = b"".join(part if isinstance(part, bytes) else format_sentence(part) for part in parts)
-    reader = SentenceReader()
-    found: list[Sentence] = []
-    while stream:
-        size = data.draw(st.integers(1, max(1, len(stream))))
-        found += reader.feed(stream[:size])
-        stream = stream[size:]
-    assert found == [part for part in parts if not isinstance(part, bytes)]
-
-
-def test_the_reader_counts_what_it_rejects_and_keeps_no_endless_line() -> None:
-    reader = SentenceReader()
-    good = format_sentence(SENTENCES["hello of tile 7"])
-    assert reader.feed(b"boot\r\n$HELLO,1*FF\r\n" + good[:9]) == []
-    assert reader.rejected == 1
-    assert reader.feed(good[9:]) == [SENTENCES["hello of tile 7"]]
-    assert reader.feed(b"$" + b"x" * 500) == []
-    assert reader.rejected == 2
-    assert reader.feed(b"x" * 500 + good) == [SENTENCES["hello of tile 7"]]
-    assert reader.rejected == 2
 
 
 @pytest.mark.parametrize(

@@ -59,6 +59,11 @@ def test_blanks_are_no_tiles_and_empty_borders_are_cut(tmp_path: Path) -> None:
     assert task.shapes[0].rows == ("##", "#.")
 
 
+def test_blank_rows_above_and_below_are_layout(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("1", "", "   ", "##", "#.", "", " ")))
+    assert task.shapes[0].rows == ("##", "#.")
+
+
 def test_variants_of_a_class_have_names_of_their_own(tmp_path: Path) -> None:
     task = load_task(write(tmp_path, shape("7", "##") + shape("7", "###")))
     assert [s.name for s in task.shapes] == ["7", "7@2"]
@@ -78,6 +83,8 @@ def test_an_unknown_shape_lists_the_known_ones(tmp_path: Path) -> None:
         (shape("1", "##", "#"), 5, "ragged rows"),
         (shape("1", "##", "#x"), 5, "unknown character 'x'"),
         (shape("1", "##") + shape("2", "#.#"), 9, "not connected"),
+        (shape("1", "#.", "  ", ".#"), 4, "not connected"),
+        (shape("1", "##", "", "##"), 5, "ragged rows"),
         (shape("1", "..", ".."), 4, "no tile"),
         (shape("1", "##") + "\n# note\n" + shape("2", "##"), 8, "drawn exactly like '1'"),
         (shape("@", "##"), 1, "label '@'"),

@@ -1,6 +1,7 @@
 """From bytes to what is known of a tile: nothing raises, nothing good is missed, nothing bad believed."""
 
 import itertools
+from dataclasses import replace
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -177,3 +178,8 @@ def test_json_has_tile_port_time_type_and_fields() -> None:
             "state": bytes(range(1, 22)).hex().upper(),
         },
     }
+
+
+def test_a_model_id_is_four_hex_digits_in_json_too() -> None:
+    fields = as_json(Heard(0.0, "p", b"", replace(HELLO, model_id=0xAB)))["fields"]
+    assert fields["model_id"] == "00AB"

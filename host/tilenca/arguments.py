@@ -1,0 +1,73 @@
+"""The command line's grammar that all commands share: the parser, and the types of its values."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+MAX_COUNT = 1_000_000
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, as all of ours."""
+
+    def error(self, message: str) -> NoReturn:
+        """Says what is wrong and where help is; exits with 2."""
+        self.exit(2, f"{self.prog}: {' '.join(message.split())}; see {self.prog} --help\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """Refuses what it does not know itself, so that the complaint names the subcommand."""
+        known, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}")
+        return known, unknown
+
+
+def number(lowest: float, highest: float = float("inf")) -> Callable[[str], float]:
+    """The type of a real number in `lowest`..`highest`; not a number and infinity are refused."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = float("nan")
+        if not lowest <= value <= highest or value == float("inf"):
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number {_range(lowest, highest)}")
+        return value
+
+    return parse
+
+
+def whole(lowest: int, highest: int = MAX_COUNT) -> Callable[[str], int]:
+    """The type of a whole number in `lowest`..`highest`."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = lowest - 1
+        if not lowest <= value <= highest:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number {_range(lowest, highest)}")
+        return value
+
+    return parse
+
+
+def _range(lowest: float, highest: float) -> str:
+    return f"from {lowest:.10g}" + ("" if highest == float("inf") else f" to {highest:.10g}")
+
+
+# A thousandth of a second is the least that means anything to a tile.
+positive = number(0.001)
+not_negative = number(0.0)
+count = whole(1)
+
+
+def add_port_argument(parser: argparse.ArgumentParser) -> None:
+    """The `--port` option that all fleet commands share."""
+    parser.add_argument(
+        "--port",
+        action="append",
+        default=[],
+        metavar="GLOB",
+        help="a port or a quoted pattern, such as '/dev/ttyACM*', repeatable (default: Mega 2560s on USB)",
+    )
