@@ -60,9 +60,9 @@ _SIGNATURES: dict[str, tuple[type | None, list[type]]] = {
     "tile_reset": (None, [c_void_p, c_uint]),
     "tile_pin": (c_int, [c_void_p, c_uint, c_char, c_uint]),
     "tile_duty": (c_double, [c_void_p, c_uint, c_char, c_uint]),
-    "tile_hold_pin": (None, [c_void_p, c_uint, c_char, c_uint, c_int]),
+    "tile_hold_pin": (c_int, [c_void_p, c_uint, c_char, c_uint, c_int]),
     "tile_set_analog": (None, [c_void_p, c_uint, c_uint, c_uint]),
-    "tile_push_edge": (None, [c_void_p, c_uint, c_char, c_uint, c_uint64, c_int]),
+    "tile_push_edge": (c_int, [c_void_p, c_uint, c_char, c_uint, c_uint64, c_int]),
     "tile_send": (None, [c_void_p, c_uint, c_char_p, c_size_t]),
     "tile_receive": (c_size_t, [c_void_p, c_uint, POINTER(c_uint8), POINTER(c_double), c_size_t]),
     "tile_display_changes": (
@@ -176,7 +176,7 @@ class EmulatedTile:
         _library().tilenca_tile_reset(self._array.handle, self.index)
 
     def write_serial(self, data: bytes) -> None:
-        """Queues bytes for the tile's USB serial; they arrive at 115,200 baud while the array runs."""
+        """Queues bytes for the tile's USB serial; they arrive while the array runs, at the tile's speed."""
         _library().tilenca_tile_send(self._array.handle, self.index, data, len(data))
 
     def read_serial(self) -> bytes:
@@ -215,15 +215,21 @@ class EmulatedTile:
 
     def pin(self, port: str, bit: int) -> bool:
         """The level of a pin, such as `pin("K", 7)`."""
-        return bool(_library().tilenca_tile_pin(self._array.handle, self.index, port.encode(), bit))
+        level = _library().tilenca_tile_pin(self._array.handle, self.index, port.encode(), bit)
+        _check(level >= 0)
+        return bool(level)
 
     def duty(self, port: str, bit: int) -> float:
         """Share of time (0..1) an output is high under its timer's PWM; 0 for an input."""
-        return float(_library().tilenca_tile_duty(self._array.handle, self.index, port.encode(), bit))
+        duty = _library().tilenca_tile_duty(self._array.handle, self.index, port.encode(), bit)
+        _check(duty >= 0)
+        return float(duty)
 
     def hold_pin(self, port: str, bit: int, level: bool) -> None:
         """Drives an input from outside; an input that nobody drives reads high."""
-        _library().tilenca_tile_hold_pin(self._array.handle, self.index, port.encode(), bit, level)
+        _check(
+            _library().tilenca_tile_hold_pin(self._array.handle, self.index, port.encode(), bit, level) == 0
+        )
 
     def set_analog(self, channel: int, value: int) -> None:
         """What analog input A0 to A15 converts to, 0..1023."""
@@ -231,7 +237,12 @@ class EmulatedTile:
 
     def push_edge(self, port: str, bit: int, cycle: int, level: bool) -> None:
         """Lets an input change at a future cycle of the tile's own clock; not for pins that a link drives."""
-        _library().tilenca_tile_push_edge(self._array.handle, self.index, port.encode(), bit, cycle, level)
+        _check(
+            _library().tilenca_tile_push_edge(
+                self._array.handle, self.index, port.encode(), bit, cycle, level
+            )
+            == 0
+        )
 
     def _read(self, what: str, address: int, count: int) -> bytes:
         buffer = (c_uint8 * count)()

@@ -121,3 +121,89 @@ def test_an_external_reset_says_so_and_keeps_sram(avr: Compile) -> None:
     assert not array[0].duty("B", 0)
     array.run(0.001)
     assert array[0].read_memory(0x1000, 3) == bytes([99, 2, 99])
+
+
+@pytest.mark.parametrize(
+    ("source", "warning"),
+    [
+        ("PRR0 = 0x80;", "power reduction (PRR0): everything stays on"),
+        ("PRR1 = 0x01;", "power reduction (PRR1): everything stays on"),
+        ("UCSR2A = 0x01;", "USART in multi-processor mode (MPCM): every frame is received"),
+        (
+            "ADCSRA = 0xA7; ADCSRB = 0x03;",
+            "ADC triggered by another event than its own end (ADTS): nothing starts it",
+        ),
+        ("TIMSK4 = 0x20; TCCR4B = 0x01;", "input capture of timer 4: nothing is captured"),
+        ("TCCR5B = 0x42;", "input capture of timer 5: nothing is captured"),
+        ("TCCR3B = 0x07;", "timer 3 clocked from its T pin: stands still"),
+        (
+            "result[0] = boot_signature_byte_get(0);",
+            "signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF",
+        ),
+        (
+            "result[0] = boot_lock_fuse_bits_get(GET_LOCK_BITS);",
+            "signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF",
+        ),
+    ],
+)
+def test_each_thing_not_modelled_has_its_name(avr: Compile, source: str, warning: str) -> None:
+    array = Array(avr(f"#include <avr/boot.h>\nint main(void) {{ {source} {source} for (;;) {{ }} }}"))
+    array.run(0.001)
+    assert array[0].warnings == [warning]
+
+
+# What stands in the boot section is at hand as `boot`; it answers through `result`.
+BOOT = """
+#include <avr/boot.h>
+static const uint8_t table[] __attribute__((aligned(256), section(".table"))) = {0x12, 0x34};
+#define PAGE 0x8000
+BOOTLOADER_SECTION __attribute__((noinline)) void boot(void) { CODE }
+int main(void) { boot(); result[15] = 0x77; for (;;) { } }
+"""
+
+
+def in_boot_section(avr: Compile, code: str, start: int = 0x3E000) -> Array:
+    places = (f"-Wl,--section-start=.bootloader={start:#x}", "-Wl,--section-start=.table=0x8000")
+    array = Array(avr(BOOT.replace("CODE", code), "-Wno-unused", *places))
+    array.run(0.02)
+    assert array[0].read_memory(0x100F, 1) == b"\x77"
+    return array
+
+
+WRITE_PAGE = """
+    boot_page_erase(PAGE); boot_spm_busy_wait();
+    result[0] = SPMCSR; result[1] = pgm_read_byte(PAGE + 2); result[2] = pgm_read_byte(0);
+    boot_page_fill(PAGE, 0xBEEF); result[3] = SPMCSR;
+    boot_page_write(PAGE); boot_spm_busy_wait();
+    boot_rww_enable(); result[4] = SPMCSR; result[5] = pgm_read_byte(PAGE);
+"""
+
+
+def test_the_boot_section_writes_a_page_and_reads_nothing_else_meanwhile(avr: Compile) -> None:
+    array = in_boot_section(avr, WRITE_PAGE)
+    assert array[0].read_memory(0x1000, 6) == bytes([0x40, 0xFF, 0xFF, 0x00, 0x00, 0xEF])
+    assert array[0].read_flash(0x8000, 3) == b"\xef\xbe\xff"
+    assert array[0].warnings == ["flash read before it was opened again after a page (RWWSRE): reads as 0xFF"]
+
+
+def test_the_application_cannot_write_flash(avr: Compile) -> None:
+    array = in_boot_section(avr, WRITE_PAGE, start=0x3DF00)
+    after_erase, _, first_byte = array[0].read_memory(0x1000, 3)
+    assert array[0].read_flash(0x8000, 256) == b"\xff" * 256
+    assert after_erase == 0
+    assert first_byte != 0xFF  # flash stays readable
+    assert array[0].warnings == ["SPM outside the boot section (from 0x3E000 on): no effect"]
+
+
+@pytest.mark.parametrize("command", ["_BV(SPMEN)", "_BV(SPMEN) | _BV(PGERS)", "_BV(SPMEN) | _BV(BLBSET)"])
+def test_a_flash_command_that_is_not_carried_out_lapses(avr: Compile, command: str) -> None:
+    wait_in_vain = f"""
+        SPMCSR = {command}; result[0] = SPMCSR;
+        boot_spm_busy_wait();
+        result[1] = SPMCSR;
+    """
+    array = in_boot_section(avr, wait_in_vain + WRITE_PAGE.replace("result[", "result[8 + "))
+    armed, lapsed = array[0].read_memory(0x1000, 2)
+    assert armed & 1
+    assert lapsed == 0
+    assert array[0].read_flash(0x8000, 2) == b"\xef\xbe"

@@ -186,3 +186,61 @@ def test_the_watchdog_interrupts_before_it_resets(avr: Compile) -> None:
     assert array[0].read_memory(0x1000, 2) == bytes([0, 1])
     array.run(0.016)
     assert array[0].read_memory(0x1000, 2) == bytes([1, 1])
+
+
+def test_the_watchdog_resets_when_its_interrupt_was_not_served(avr: Compile) -> None:
+    source = """
+    ISR(WDT_vect) { }
+    int main(void) {
+        uint8_t cause = MCUSR;
+        MCUSR = 0;
+        if (cause & 8) { result[0] = cause; wdt_disable(); for (;;) { } }
+        result[0] = 0;
+        cli(); WDTCSR = 0x18; WDTCSR = 0x48;            /* 16 ms, interrupt and reset, and nobody listens */
+        for (;;) result[1] = WDTCSR;
+    }"""
+    array = Array(avr(source))
+    array.run(0.020)
+    assert array[0].read_memory(0x1000, 2) == bytes([0, 0xC8])
+    array.run(0.016)
+    assert array[0].read_memory(0x1000, 1) == b"\x08"
+
+
+def test_a_pin_is_read_back_one_cycle_late(avr: Compile) -> None:
+    source = """
+    int main(void) {
+        DDRB = 0xFF; PORTB = 0;
+        asm volatile("ldi r24, 0x5A\\n out %0, r24\\n in r25, %1\\n in r26, %1\\n"
+                     "sts 0x1000, r25\\n sts 0x1001, r26\\n"
+                     "out %0, r1\\n nop\\n in r25, %1\\n sts 0x1002, r25\\n"
+                     "sbi %0, 0\\n in r25, %1\\n sts 0x1003, r25\\n"
+                     "cbi %0, 0\\n sbic %1, 0\\n sts 0x1004, r24\\n"
+                     :: "I"(_SFR_IO_ADDR(PORTB)), "I"(_SFR_IO_ADDR(PINB)) : "r24", "r25", "r26", "memory");
+        for (;;) { }
+    }"""
+    assert run(avr(source)).read_memory(0x1000, 5) == bytes([0x00, 0x5A, 0x00, 0x00, 0x5A])
+
+
+@pytest.mark.parametrize("wire", [True, False])
+def test_an_edge_leaves_its_mark_while_its_interrupt_is_off(avr: Compile, wire: bool) -> None:
+    source = """
+    ISR(INT3_vect) { result[1]++; }
+    int main(void) {
+        result[0] = result[1] = 0;
+        EICRA = 0x80; EICRB = 0x30;                     /* INT3 falling, INT6 rising */
+        sei();
+        _delay_ms(2);
+        result[0] = EIFR;
+        EIMSK = 0x08;
+        for (;;) { }
+    }"""
+    array = Array(avr(source))
+    if wire:
+        array[0].push_edge("D", 3, 16_000, False)
+        array[0].push_edge("E", 6, 16_000, False)
+    array.run(0.001)
+    if not wire:
+        array[0].hold_pin("D", 3, False)
+        array[0].hold_pin("E", 6, False)
+    array.run(0.002)
+    assert array[0].read_memory(0x1000, 2) == bytes([0x08, 1])

@@ -196,5 +196,51 @@ def test_a_reset_cuts_a_frame_off(avr: Compile) -> None:
     array.run(0.0004)
     array[0].reset()
     array.run(0.01)
-    # The start bit and the first zeros, then an idle line: at 115,200 baud a break, then the frame sent anew.
+    # The frame cut short and the one sent anew after it run into one.
     assert array[0].read_serial()[0] == 0
+
+
+# UBRR as an Arduino's Serial.begin() chooses it, with what its text is then worth.
+@pytest.mark.parametrize(
+    ("ubrr", "double_speed", "baud"),
+    [(1666, 1, 1200), (207, 1, 9600), (103, 0, 9600), (34, 1, 57600), (16, 1, 115200), (8, 1, 230400),
+     (3, 1, 500000), (0, 1, 2000000), (9, 0, 100000)],
+)  # fmt: skip
+def test_the_computer_opens_the_port_at_the_program_s_speed(
+    avr: Compile, ubrr: int, double_speed: int, baud: int
+) -> None:
+    source = (
+        SERIAL
+        + f"""
+    int main(void) {{
+        open0({ubrr}); UCSR0A = {double_speed} << 1;
+        for (const char *at = "Hello, tile!"; *at; at++) put0(*at);
+        while (!(UCSR0A & 0x80)) {{ }}
+        put0(UDR0);
+        for (;;) {{ }}
+    }}"""
+    )
+    array = Array(avr(source))
+    array.run(0.15)
+    hello = array[0].read_serial_timed()
+    assert bytes(value for _, value in hello) == b"Hello, tile!"
+    took = hello[-1][0] - hello[0][0]
+    assert took == pytest.approx(11 * 10 / baud, rel=0.04)
+    array[0].write_serial(b"?")
+    array.run(0.03)
+    assert array[0].read_serial() == b"?"
+
+
+def test_a_program_may_change_its_speed(avr: Compile) -> None:
+    source = (
+        SERIAL
+        + """
+    int main(void) {
+        open0(207); put0('a'); while (!(UCSR0A & 0x40)) { }
+        open0(16); put0('b'); put0('c');
+        for (;;) { }
+    }"""
+    )
+    array = Array(avr(source))
+    array.run(0.01)
+    assert array[0].read_serial() == b"abc"

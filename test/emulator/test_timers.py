@@ -29,11 +29,15 @@ int main(void) { TCCR5B = 1; SETUP; sei(); for (;;) { } }
         ("TIMER0_COMPB_vect", "OCR0B = 17; TCCR0A = 3; TCCR0B = 2; TIMSK0 = 4", 8 * 256),
         ("TIMER2_OVF_vect", "TCCR2A = 3; TCCR2B = 3; TIMSK2 = 1", 32 * 256),
         ("TIMER2_COMPA_vect", "TCCR2A = 2; OCR2A = 249; TCCR2B = 4; TIMSK2 = 2", 64 * 250),
-        ("TIMER1_OVF_vect", "ICR1 = 419; TCCR1A = 2; TCCR1B = 0x19; TIMSK1 = 1", 420),
-        ("TIMER1_COMPB_vect", "ICR1 = 419; OCR1B = 5; TCCR1A = 2; TCCR1B = 0x19; TIMSK1 = 4", 420),
-        ("TIMER1_CAPT_vect", "ICR1 = 999; TCCR1B = 0x19; TIMSK1 = 32", 1000),
+        ("TIMER1_OVF_vect", "TCCR1A = 2; TCCR1B = 0x18; ICR1 = 419; TCCR1B = 0x19; TIMSK1 = 1", 420),
+        (
+            "TIMER1_COMPB_vect",
+            "OCR1B = 5; TCCR1A = 2; TCCR1B = 0x18; ICR1 = 419; TCCR1B = 0x19; TIMSK1 = 4",
+            420,
+        ),
+        ("TIMER1_CAPT_vect", "TCCR1B = 0x18; ICR1 = 999; TCCR1B = 0x19; TIMSK1 = 32", 1000),
         ("TIMER3_COMPC_vect", "OCR3A = 1234; OCR3C = 7; TCCR3B = 9; TIMSK3 = 8", 1235),
-        ("TIMER4_OVF_vect", "ICR4 = 800; TCCR4A = 2; TCCR4B = 0x11; TIMSK4 = 1", 1600),
+        ("TIMER4_OVF_vect", "TCCR4A = 2; TCCR4B = 0x10; ICR4 = 800; TCCR4B = 0x11; TIMSK4 = 1", 1600),
         ("TIMER4_OVF_vect", "OCR4A = 300; TCCR4A = 1; TCCR4B = 0x11; TIMSK4 = 1", 600),
     ],
 )
@@ -65,7 +69,7 @@ def test_a_free_running_timer_counts_cycles(avr: Compile) -> None:
 def test_a_buffered_compare_value_waits_for_the_end_of_the_period(avr: Compile) -> None:
     source = """
     int main(void) {
-        TCCR1A = 2; ICR1 = 9999; OCR1B = 5000; TCCR1B = 0x19;
+        OCR1B = 5000; TCCR1A = 2; TCCR1B = 0x18; ICR1 = 9999; TCCR1B = 0x19;
         while (!(TIFR1 & 1)) { }            /* the compare value is in force from here on */
         TIFR1 = 0xFF;
         OCR1B = 100;                        /* too late for this period */
@@ -86,7 +90,7 @@ def test_duty_is_read_off_the_pins(avr: Compile) -> None:
     int main(void) {
         DDRB = 0x30; DDRE = 0x28;
         TCCR2A = 0x81; TCCR2B = 4; OCR2A = 51;                  /* phase correct, 20 % */
-        TCCR1A = 0x82; ICR1 = 399; OCR1A = 99; TCCR1B = 0x19;   /* fast, 100 of 400 */
+        TCCR1A = 0x82; TCCR1B = 0x18; ICR1 = 399; OCR1A = 99; TCCR1B = 0x19;   /* fast, 100 of 400 */
         TCCR3A = 0x0D; OCR3C = 63; TCCR3B = 0x09;               /* fast, 8 bits, inverted, 64 of 256 */
         PORTE = 0x08;                                           /* no timer at all */
         for (;;) { }
@@ -114,3 +118,84 @@ def test_a_compare_output_really_toggles_its_pin(avr: Compile) -> None:
     }"""
     (passed,) = words(run(avr(source)).read_memory(0x1000, 2))
     assert passed == pytest.approx(99 * 2000 % 65536, abs=20)
+
+
+def test_the_capture_register_takes_a_value_only_in_modes_that_count_up_to_it(avr: Compile) -> None:
+    source = """
+    int main(void) {
+        ICR1 = 1234; result16[0] = ICR1;                    /* normal mode */
+        TCCR1A = 3; TCCR1B = 0x18; ICR1 = 1234; result16[1] = ICR1;     /* mode 15: up to OCR1A */
+        TCCR1A = 2; ICR1 = 1234; result16[2] = ICR1;        /* mode 14 */
+        TCCR1A = 0; TCCR1B = 0; ICR1 = 7; result16[3] = ICR1;
+        for (;;) { }
+    }"""
+    assert words(run(avr(source)).read_memory(0x1000, 8)) == [0, 0, 1234, 1234]
+
+
+@pytest.mark.parametrize(
+    ("timer", "setup", "period"),
+    [
+        (1, "TCCR1A = 1; TCCR1B = 0x0A; OCR1A = 99", 8 * 256),  # mode 5
+        (1, "TCCR1A = 3; TCCR1B = 0x0A; OCR1A = 99", 8 * 1024),  # mode 7
+        (1, "TCCR1A = 1; TCCR1B = 0x11; OCR1A = 999", 2 * 999),  # mode 9
+        (1, "TCCR1A = 3; TCCR1B = 0x11; OCR1A = 999", 2 * 999),  # mode 11
+        (1, "TCCR1A = 3; TCCR1B = 0x19; OCR1A = 999", 1000),  # mode 15
+        (1, "TCCR1A = 3; TCCR1B = 0x19; OCR1A = 999; _delay_us(500); OCR1A = 60000", 60001),
+        (1, "TCCR1A = 3; TCCR1B = 0x19; OCR1A = 60000; _delay_ms(5); OCR1A = 999", 1000),
+        (2, "TCCR2A = 1; TCCR2B = 0x0A; OCR2A = 99", 8 * 2 * 99),  # mode 5
+        (2, "TCCR2A = 3; TCCR2B = 0x0A; OCR2A = 99", 8 * 100),  # mode 7
+    ],
+)
+def test_a_top_that_waits_in_its_buffer_comes_into_force_unseen(
+    avr: Compile, timer: int, setup: str, period: int
+) -> None:
+    source = f"""
+    int main(void) {{
+        {setup};
+        _delay_ms(10);                                      /* nobody looks at the timer meanwhile */
+        TCCR5B = 1;
+        for (uint8_t n = 0; n < 3; n++) {{
+            TIFR{timer} = 1;
+            while (!(TIFR{timer} & 1)) {{ }}
+            result16[n] = TCNT5;
+        }}
+        for (;;) {{ }}
+    }}"""
+    times = words(run(avr(source)).read_memory(0x1000, 6))
+    assert [(b - a) % 65536 for a, b in pairwise(times)] == pytest.approx([period] * 2, abs=8)
+
+
+@pytest.mark.parametrize("mode", [(0x40, 0x09), (0x41, 0x11), (0x43, 0x11), (0x43, 0x19)])
+@pytest.mark.parametrize("top", [5, 6, 37])
+def test_an_output_is_the_same_however_often_it_is_looked_at(
+    avr: Compile, mode: tuple[int, int], top: int
+) -> None:
+    setup = f"DDRB = 0x20; TCCR1A = {mode[0]}; OCR1A = {top}; TCCR1B = {mode[1]};"
+    elf = avr(f"int main(void) {{ {setup} for (;;) {{ }} }}")
+    watched, levels = Array(elf), []
+    for _ in range(24):
+        watched.run(16e-6)
+        levels.append(watched[0].pin("B", 5))
+    unwatched = []
+    for moment in range(24):
+        with Array(elf) as array:
+            array.run(16e-6 * (moment + 1))
+            unwatched.append(array[0].pin("B", 5))
+    assert unwatched == levels
+    assert len(set(levels)) == 2
+
+
+def test_a_compare_value_that_comes_within_reach_interrupts(avr: Compile) -> None:
+    source = """
+    ISR(TIMER1_COMPB_vect) { result[0]++; }
+    int main(void) {
+        result[0] = 0;
+        OCR1B = 5000; TCCR1A = 2; TCCR1B = 0x18; ICR1 = 419; TCCR1B = 0x19;     /* 5000: never */
+        TIMSK1 = 4; sei();
+        _delay_ms(1); result[1] = result[0];
+        OCR1B = 7;
+        for (;;) { }
+    }"""
+    memory = run(avr(source), 0.002).read_memory(0x1000, 2)
+    assert memory[1] == 0
+    assert memory[0] in range(30, 42)  # of 420 cycles each, in a little less than a millisecond

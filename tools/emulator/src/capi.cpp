@@ -16,8 +16,14 @@ namespace {
 
 thread_local std::string last_error;
 
-tilenca::avr::PinId pin_of(char port, unsigned bit) {
-    return {tilenca::avr::port_index(port), static_cast<uint8_t>(bit & 7)};
+bool find_pin(char port, unsigned bit, tilenca::avr::PinId* pin) {
+    if (port < 'A' || port > 'L' || port == 'I' || bit > 7) {
+        last_error = "no pin P" + std::string(1, port) + std::to_string(bit) +
+                     "; ports are A to L without I, bits 0 to 7";
+        return false;
+    }
+    *pin = {tilenca::avr::port_index(port), static_cast<uint8_t>(bit)};
+    return true;
 }
 
 int copy_out(const uint8_t* from, unsigned limit, unsigned address, uint8_t* bytes, unsigned count) {
@@ -111,29 +117,41 @@ void tilenca_tile_reset(tilenca_array* array, unsigned tile) {
 
 int tilenca_tile_pin(tilenca_array* array, unsigned tile, char port, unsigned bit) {
     auto& chip = array->array.tile(tile).chip();
-    return chip.gpio().level(pin_of(port, bit), chip.cpu().cycle);
+    tilenca::avr::PinId pin;
+    return find_pin(port, bit, &pin) ? chip.gpio().level(pin, chip.cpu().cycle) : -1;
 }
 
 double tilenca_tile_duty(tilenca_array* array, unsigned tile, char port, unsigned bit) {
-    return array->array.tile(tile).chip().duty(pin_of(port, bit));
+    tilenca::avr::PinId pin;
+    return find_pin(port, bit, &pin) ? array->array.tile(tile).chip().duty(pin) : -1;
 }
 
-void tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level) {
+int tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level) {
     auto& chip = array->array.tile(tile).chip();
-    chip.gpio().hold_input(pin_of(port, bit), level != 0, chip.cpu().cycle);
+    tilenca::avr::PinId pin;
+    if (!find_pin(port, bit, &pin)) {
+        return -1;
+    }
+    chip.gpio().hold_input(pin, level != 0, chip.cpu().cycle);
+    return 0;
 }
 
 void tilenca_tile_set_analog(tilenca_array* array, unsigned tile, unsigned channel, unsigned value) {
     array->array.tile(tile).chip().adc().set_input(channel, static_cast<uint16_t>(value));
 }
 
-void tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit, uint64_t cycle,
-                            int level) {
+int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit, uint64_t cycle,
+                           int level) {
     auto& chip = array->array.tile(tile).chip();
-    if (chip.gpio().line(pin_of(port, bit)) == nullptr) {
-        chip.gpio().attach_line(pin_of(port, bit));
+    tilenca::avr::PinId pin;
+    if (!find_pin(port, bit, &pin)) {
+        return -1;
     }
-    chip.push_edge(pin_of(port, bit), cycle, level != 0);
+    if (chip.gpio().line(pin) == nullptr) {
+        chip.gpio().attach_line(pin);
+    }
+    chip.push_edge(pin, cycle, level != 0);
+    return 0;
 }
 
 void tilenca_tile_send(tilenca_array* array, unsigned tile, const uint8_t* bytes, size_t count) {
@@ -188,8 +206,8 @@ int tilenca_tile_read_memory(tilenca_array* array, unsigned tile, unsigned addre
 
 int tilenca_tile_read_flash(tilenca_array* array, unsigned tile, unsigned address, uint8_t* bytes,
                             unsigned count) {
-    const auto& cpu = array->array.tile(tile).chip().cpu();
-    return copy_out(cpu.flash, tilenca::avr::kFlashBytes, address, bytes, count);
+    const auto& chip = array->array.tile(tile).chip();
+    return copy_out(chip.flash(), tilenca::avr::kFlashBytes, address, bytes, count);
 }
 
 void tilenca_tile_cycles(tilenca_array* array, unsigned tile, uint64_t* total, uint64_t* asleep) {

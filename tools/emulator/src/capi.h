@@ -34,15 +34,16 @@ int tilenca_tile_leds(tilenca_array* array, unsigned tile);
 void tilenca_tile_rgb(tilenca_array* array, unsigned tile, uint8_t duty[3]);
 void tilenca_tile_press_button(tilenca_array* array, unsigned tile, int pressed);
 void tilenca_tile_reset(tilenca_array* array, unsigned tile);
-// A pin by port letter and bit: its level, the share of time it is high, and holding it from outside.
+// A pin by port letter (A to L, but no I) and bit: its level, the share of time it is high, and holding it
+// from outside. All fail for a pin that does not exist.
 int tilenca_tile_pin(tilenca_array* array, unsigned tile, char port, unsigned bit);
 double tilenca_tile_duty(tilenca_array* array, unsigned tile, char port, unsigned bit);
-void tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level);
+int tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level);
 // What an analog channel (0..15) converts to, 0..1023.
 void tilenca_tile_set_analog(tilenca_array* array, unsigned tile, unsigned channel, unsigned value);
 // A change of an input's level ahead of time, at a cycle of the tile's clock.
-void tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit, uint64_t cycle,
-                            int level);
+int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit, uint64_t cycle,
+                           int level);
 
 void tilenca_tile_send(tilenca_array* array, unsigned tile, const uint8_t* bytes, size_t count);
 // Takes at most `room` bytes out of what the tile sent, with the time each arrived; returns how many.

@@ -8,14 +8,14 @@ namespace {
 
 constexpr uint16_t kAdcl = 0x78, kAdch = 0x79, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C;
 constexpr uint8_t kAden = 0x80, kAdsc = 0x40, kAdate = 0x20, kAdif = 0x10, kAdie = 0x08;
-constexpr uint8_t kAdlar = 0x20, kMux5 = 0x08;
+constexpr uint8_t kAdlar = 0x20, kMux5 = 0x08, kTriggerSource = 0x07; // ADTS: 0 is free running
 constexpr unsigned kFirstClocks = 25, kClocks = 13;
 constexpr uint16_t kBandgap = 225; // 1.1 V of 5 V
 
 } // namespace
 
 std::vector<uint16_t> Adc::registers() const {
-    return {kAdcsra};
+    return {kAdcsra, kAdcsrb};
 }
 
 std::vector<uint8_t> Adc::vectors() const {
@@ -42,7 +42,18 @@ void Adc::start(uint64_t cycle, unsigned adc_clocks) {
     core_.schedule.set(Slot::Adc, cycle + uint64_t{adc_clocks} * divisor);
 }
 
-void Adc::write(uint16_t, uint8_t value, uint64_t cycle) {
+void Adc::write(uint16_t address, uint8_t value, uint64_t cycle) {
+    if (address == kAdcsrb) {
+        byte(kAdcsrb) = value;
+    } else {
+        write_control(value, cycle);
+    }
+    if ((byte(kAdcsra) & kAdate) != 0 && (byte(kAdcsrb) & kTriggerSource) != 0) {
+        core_.warnings.once("ADC triggered by another event than its own end (ADTS): nothing starts it");
+    }
+}
+
+void Adc::write_control(uint8_t value, uint64_t cycle) {
     const uint8_t before = byte(kAdcsra);
     const auto flag = static_cast<uint8_t>((value & kAdif) != 0 ? 0 : before & kAdif);
     const bool running = (before & kAdsc) != 0;
@@ -64,7 +75,7 @@ void Adc::on_event(Slot, uint64_t cycle) {
     byte(kAdcl) = static_cast<uint8_t>(shown);
     byte(kAdch) = static_cast<uint8_t>(shown >> 8);
     byte(kAdcsra) |= kAdif;
-    const bool free_running = (byte(kAdcsra) & kAdate) != 0 && (byte(kAdcsrb) & 7) == 0;
+    const bool free_running = (byte(kAdcsra) & kAdate) != 0 && (byte(kAdcsrb) & kTriggerSource) == 0;
     if (free_running) {
         start(cycle, kClocks);
     } else {

@@ -22,6 +22,7 @@ class Adc : public Peripheral {
     void set_input(unsigned channel, uint16_t value) { inputs_[channel % 16] = value & 0x3FF; }
 
   private:
+    void write_control(uint8_t value, uint64_t cycle);
     void start(uint64_t cycle, unsigned adc_clocks);
     uint16_t selected() const;
     void update_requests();

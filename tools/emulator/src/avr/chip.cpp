@@ -179,8 +179,12 @@ void Chip::interrupt_taken(uint8_t vector, uint64_t) {
     }
 }
 
-uint32_t Chip::store_program_memory(uint64_t cycle, bool advance_z) {
-    return self_programming_->execute(cycle, advance_z);
+uint32_t Chip::store_program_memory(uint32_t word, uint64_t cycle, bool advance_z) {
+    return self_programming_->execute(word, cycle, advance_z);
+}
+
+uint8_t Chip::read_program_memory(uint32_t address) {
+    return self_programming_->read_flash(address);
 }
 
 void Chip::address_outside_memory(uint16_t address, bool write) {

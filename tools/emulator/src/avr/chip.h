@@ -40,6 +40,7 @@ class Chip : private Bus {
     Eeprom& eeprom() { return *eeprom_; }
     Adc& adc() { return *adc_; }
     Usart& usart(unsigned number) { return *usarts_[number]; }
+    const uint8_t* flash() const { return program_->bytes(); }
     const Warnings& warnings() const { return warnings_; }
     // Changes the level of an input from `cycle` on; the pin has a line attached.
     void push_edge(PinId pin, uint64_t cycle, bool level);
@@ -55,7 +56,8 @@ class Chip : private Bus {
     uint64_t serve_events(uint64_t cycle) override;
     void interrupt_taken(uint8_t vector, uint64_t cycle) override;
     void watchdog_reset(uint64_t cycle) override { watchdog_->restart(cycle); }
-    uint32_t store_program_memory(uint64_t cycle, bool advance_z) override;
+    uint32_t store_program_memory(uint32_t word, uint64_t cycle, bool advance_z) override;
+    uint8_t read_program_memory(uint32_t address) override;
     void address_outside_memory(uint16_t address, bool write) override;
 
     void attach(Peripheral& peripheral);

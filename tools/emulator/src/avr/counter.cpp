@@ -62,30 +62,39 @@ uint64_t Counter::ticks_to_boundary() const {
     return soonest;
 }
 
+// Whether every period from here on is like the next, until somebody writes a register. A buffered value that
+// waits could change the top, and with it the period itself.
+bool Counter::is_settled() const {
+    return count_ <= top() && (!is_pwm() || compares_ == buffers_);
+}
+
 void Counter::advance(uint64_t ticks) {
-    // After two whole periods all flags are set and all buffers loaded: the rest repeats itself.
-    if (ticks > 4 * period() && count_ <= top()) {
-        const uint64_t skipped = (ticks - 2 * period()) / period();
-        ticks -= skipped * period();
-        advance(2 * period());
-        ticks -= 2 * period();
-        for (unsigned channel = 0; channel < 3; channel++) {
-            if (toggles(channel) && !is_two_way() && compares_[channel] <= top() && skipped % 2 != 0) {
-                levels_[channel] = !levels_[channel];
-            }
-        }
+    while (ticks != 0 && !is_settled()) {
+        ticks -= step(ticks);
+    }
+    // Two periods set every flag that can be set, and an output that toggles ends as it began: however many
+    // pairs of periods follow, they change nothing.
+    const uint64_t pair = 2 * period();
+    if (ticks > 2 * pair) {
+        ticks = pair + ticks % pair;
     }
     while (ticks != 0) {
-        const uint64_t step = ticks_to_boundary();
-        const uint64_t taken = std::min(step, ticks);
-        const auto passed = static_cast<uint16_t>(taken == step ? step - 1 : taken);
-        count_ = static_cast<uint16_t>(down_ ? count_ - passed : count_ + passed);
-        blocked_ = blocked_ && passed == 0;
-        if (taken == step) {
-            leave();
-        }
-        ticks -= taken;
+        ticks -= step(ticks);
     }
+}
+
+// Runs to the next value at which anything can happen and leaves it, or as far as `ticks` go; returns the
+// ticks taken.
+uint64_t Counter::step(uint64_t ticks) {
+    const uint64_t whole = ticks_to_boundary();
+    const uint64_t taken = std::min(whole, ticks);
+    const auto passed = static_cast<uint16_t>(taken == whole ? whole - 1 : taken);
+    count_ = static_cast<uint16_t>(down_ ? count_ - passed : count_ + passed);
+    blocked_ = blocked_ && passed == 0;
+    if (taken == whole) {
+        leave();
+    }
+    return taken;
 }
 
 // The tick that leaves the present value.
@@ -199,9 +208,7 @@ uint64_t Counter::ticks_to_flag(uint8_t mask) const {
     if ((mask & kFlagCapture) != 0 && mode_.top == Top::Capture) {
         consider(ticks_to_leave(capture_, true));
     }
-    if (soonest != 0) {
-        consider(ticks_to_reload());
-    }
+    consider(ticks_to_reload());
     return soonest;
 }
 

@@ -52,6 +52,8 @@ class Counter {
     bool is_two_way() const { return mode_.wave >= Wave::PhaseCorrect; }
     bool toggles(unsigned channel) const { return actions_[channel] == 1; }
     uint64_t period() const;
+    bool is_settled() const;
+    uint64_t step(uint64_t ticks);
     uint64_t ticks_to_boundary() const;
     uint64_t ticks_to_leave(uint16_t value, bool either_way) const;
     uint64_t ticks_to_reload() const;

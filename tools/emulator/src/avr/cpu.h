@@ -28,7 +28,10 @@ struct Bus {
     virtual uint64_t serve_events(uint64_t cycle) = 0;
     virtual void interrupt_taken(uint8_t vector, uint64_t cycle) = 0;
     virtual void watchdog_reset(uint64_t cycle) = 0;
-    virtual uint32_t store_program_memory(uint64_t cycle, bool advance_z) = 0; // returns the cycles it took
+    // SPM at that word; returns the cycles it took.
+    virtual uint32_t store_program_memory(uint32_t word, uint64_t cycle, bool advance_z) = 0;
+    // LPM and ELPM, while `flash` is null.
+    virtual uint8_t read_program_memory(uint32_t address) = 0;
     virtual void address_outside_memory(uint16_t address, bool write) = 0;
 };
 
@@ -37,7 +40,7 @@ struct Cpu {
     uint64_t limit = 0;       // the cycle at which the running instructions hand control back
     bool special[kSramStart]; // I/O addresses whose access goes through the bus
     const Instruction* program = nullptr;
-    const uint8_t* flash = nullptr;
+    const uint8_t* flash = nullptr; // null: not to be read without asking the bus
     Bus* bus = nullptr;
 
     // Where execution stands; valid while no instruction runs.
@@ -49,10 +52,11 @@ struct Cpu {
     uint64_t held_until =
         0; // no interrupt is taken at or before this cycle: the instruction after SEI runs first
     uint64_t sleep_cycles = 0;
-    uint32_t stall_cycles = 0; // cycles an I/O access stops the core for
-    uint32_t vector_base = 0;  // word address of vector 0
-    uint16_t address = 0;      // of the access outside SRAM under way
-    uint32_t return_word = 0;  // of the call under way, when the stack is outside SRAM
+    uint32_t stall_cycles = 0;  // cycles an I/O access stops the core for
+    uint32_t vector_base = 0;   // word address of vector 0
+    uint16_t address = 0;       // of the access outside SRAM under way
+    uint32_t return_word = 0;   // of the call under way, when the stack is outside SRAM
+    uint32_t flash_address = 0; // of the read under way, when `flash` is null
     bool interrupts_on = false;
     bool transfer = false; // the T flag
     bool asleep = false;

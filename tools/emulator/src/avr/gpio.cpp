@@ -41,8 +41,7 @@ Gpio::Port* Gpio::port_of(uint16_t address, unsigned* which) {
 uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
     unsigned which = 0;
     if (Port* port = port_of(address, &which); port != nullptr && which == 0) {
-        update(*port, cycle);
-        return port->levels;
+        return pins_as_read(*port, cycle);
     }
     return byte(address);
 }
@@ -52,8 +51,11 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
     if (address == kPcifr || address == kEifr) {
         byte(address) &= static_cast<uint8_t>(~value);
     } else if (Port* port = port_of(address, &which); port != nullptr) {
+        port->written = cycle;
+        port->ddr_before = ddr(*port);
+        port->latch_before = latch(*port);
         if (which == 0) {
-            byte(static_cast<uint16_t>(port->base + 2)) ^= value; // a one written to PIN toggles PORT
+            latch(*port) ^= value; // a one written to PIN toggles PORT
         } else {
             byte(address) = value;
         }
@@ -67,9 +69,15 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
     update_requests();
 }
 
-uint8_t Gpio::compute_levels(Port& port, uint64_t cycle) {
-    const uint8_t ddr = byte(static_cast<uint16_t>(port.base + 1)),
-                  latch = byte(static_cast<uint16_t>(port.base + 2));
+// PIN lags a cycle behind: in the cycle after a write, it still tells what was before. A program needs a NOP
+// between the two, here as on the chip.
+uint8_t Gpio::pins_as_read(Port& port, uint64_t cycle) {
+    update(port, cycle);
+    const bool too_soon = cycle == port.written + 1;
+    return too_soon ? compute_levels(port, cycle, port.ddr_before, port.latch_before) : port.levels;
+}
+
+uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch) {
     uint8_t outside = port.held;
     for (unsigned bit = 0; port.has_lines >> bit != 0; bit++) {
         if (port.lines[bit] != nullptr && !port.lines[bit]->level_at(cycle)) {

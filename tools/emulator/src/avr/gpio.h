@@ -73,7 +73,9 @@ class Gpio : public Peripheral {
 
   private:
     struct Port {
-        uint16_t base = 0; // PIN; DDR and PORT follow
+        uint16_t base = 0;    // PIN; DDR and PORT follow
+        uint64_t written = 0; // cycle of the last write to any of the three
+        uint8_t ddr_before = 0, latch_before = 0;
         uint8_t levels = 0xFF;
         uint8_t held = 0xFF;     // levels given from outside
         uint8_t taken = 0;       // outputs that a peripheral drives
@@ -86,12 +88,19 @@ class Gpio : public Peripheral {
     };
 
     Port* port_of(uint16_t address, unsigned* which);
-    uint8_t compute_levels(Port& port, uint64_t cycle);
+    uint8_t& ddr(const Port& port) const { return byte(static_cast<uint16_t>(port.base + 1)); }
+    uint8_t& latch(const Port& port) const { return byte(static_cast<uint16_t>(port.base + 2)); }
+    uint8_t compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch);
+    uint8_t compute_levels(Port& port, uint64_t cycle) {
+        return compute_levels(port, cycle, ddr(port), latch(port));
+    }
+    uint8_t pins_as_read(Port& port, uint64_t cycle);
     void update(Port& port, uint64_t cycle);
     void pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t cycle);
     void external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift);
     void pin_change(unsigned bank, uint8_t changed);
     void update_requests();
+    uint8_t external_watched() const;
     void update_watched(uint64_t cycle);
     void schedule_lines(uint64_t cycle);
     uint8_t sense(unsigned number) const;

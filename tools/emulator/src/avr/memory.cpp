@@ -34,6 +34,11 @@ TILENCA_OP(write_bit_slow) {
     TILENCA_NEXT(1, 2);
 }
 
+TILENCA_OP(load_program_slow) {
+    cpu->data[at->d] = cpu->bus->read_program_memory(cpu->flash_address);
+    TILENCA_NEXT(1, 3);
+}
+
 uint32_t far_z(const Cpu* cpu) {
     return static_cast<uint32_t>((cpu->data[kRampZ] & 3) << 16 | pair(cpu, kZ));
 }
@@ -48,6 +53,15 @@ uint32_t far_z(const Cpu* cpu) {
     }                                                                                                        \
     cpu->data[at->d] = cpu->data[address];                                                                   \
     TILENCA_NEXT(1, 2)
+
+#define TILENCA_LOAD_PROGRAM(address_expression)                                                             \
+    const uint32_t address = (address_expression);                                                           \
+    if (__builtin_expect(cpu->flash == nullptr, 0)) {                                                        \
+        cpu->flash_address = address;                                                                        \
+        return load_program_slow(cpu, at, cycle, carry, zero, nvh);                                          \
+    }                                                                                                        \
+    cpu->data[at->d] = cpu->flash[address];                                                                  \
+    TILENCA_NEXT(1, 3)
 
 #define TILENCA_STORE(address_expression)                                                                    \
     const auto address = static_cast<uint16_t>(address_expression);                                          \
@@ -156,35 +170,31 @@ TILENCA_OP(cbi) {
 }
 
 TILENCA_OP(lpm) {
-    cpu->data[at->d] = cpu->flash[pair(cpu, kZ)];
-    TILENCA_NEXT(1, 3);
+    TILENCA_LOAD_PROGRAM(pair(cpu, kZ));
 }
 TILENCA_OP(lpm_plus) {
     const uint16_t z = pair(cpu, kZ);
     set_pair(cpu, kZ, z + 1u);
-    cpu->data[at->d] = cpu->flash[z];
-    TILENCA_NEXT(1, 3);
+    TILENCA_LOAD_PROGRAM(z);
 }
 TILENCA_OP(elpm) {
-    cpu->data[at->d] = cpu->flash[far_z(cpu)];
-    TILENCA_NEXT(1, 3);
+    TILENCA_LOAD_PROGRAM(far_z(cpu));
 }
 TILENCA_OP(elpm_plus) {
     const uint32_t z = far_z(cpu);
     set_pair(cpu, kZ, z + 1);
     cpu->data[kRampZ] = static_cast<uint8_t>((z + 1) >> 16 & 3);
-    cpu->data[at->d] = cpu->flash[z];
-    TILENCA_NEXT(1, 3);
+    TILENCA_LOAD_PROGRAM(z);
 }
 // SPM can replace the program: where to go on is worked out afresh.
 TILENCA_OP(spm) {
     const auto word = static_cast<uint32_t>(at - cpu->program);
-    cycle += cpu->bus->store_program_memory(cycle, false);
+    cycle += cpu->bus->store_program_memory(word, cycle, false);
     return next(cpu, cpu->program + word + 1, cycle, carry, zero, nvh);
 }
 TILENCA_OP(spm_plus) {
     const auto word = static_cast<uint32_t>(at - cpu->program);
-    cycle += cpu->bus->store_program_memory(cycle, true);
+    cycle += cpu->bus->store_program_memory(word, cycle, true);
     return next(cpu, cpu->program + word + 1, cycle, carry, zero, nvh);
 }
 

@@ -86,21 +86,38 @@ void Gpio::update_requests() {
     }
 }
 
+// INTn sets its flag on the edge it is told to, enabled or not; a low level raises no flag, and matters only
+// while enabled.
+uint8_t Gpio::external_watched() const {
+    uint8_t watched = byte(kEimsk);
+    for (unsigned i = 0; i < 8; i++) {
+        watched |= static_cast<uint8_t>((sense(i) != 0) << i);
+    }
+    return watched;
+}
+
 // Edges on an input become events only while an interrupt could come of them, or its flag be seen.
 void Gpio::update_watched(uint64_t cycle) {
-    for (Port& port : ports_) {
-        port.watched_in = 0;
+    const uint8_t external = external_watched();
+    std::array<uint8_t, kPorts> before;
+    for (unsigned i = 0; i < kPorts; i++) {
+        before[i] = ports_[i].watched_in;
     }
     ports_[kPortB].watched_in = byte(kPcmsk0);
     ports_[kPortJ].watched_in = byte(kPcmsk0 + 1) >> 1;
-    ports_[kPortE].watched_in = (byte(kPcmsk0 + 1) & 1) | (byte(kEimsk) & 0xF0);
+    ports_[kPortE].watched_in = (byte(kPcmsk0 + 1) & 1) | (external & 0xF0);
     ports_[kPortK].watched_in = byte(kPcmsk0 + 2);
-    ports_[kPortD].watched_in = byte(kEimsk) & 0x0F;
-    for (Port& port : ports_) {
+    ports_[kPortD].watched_in = external & 0x0F;
+    for (unsigned i = 0; i < kPorts; i++) {
+        Port& port = ports_[i];
         port.watched_in &= port.has_lines;
+        // What happened while nobody watched raises nothing now.
+        if (const uint8_t fresh = port.watched_in & ~before[i]; fresh != 0) {
+            port.levels =
+                static_cast<uint8_t>((port.levels & ~fresh) | (compute_levels(port, cycle) & fresh));
+        }
         if (port.watched_in != 0) {
-            // What happened while nobody watched raises nothing now.
-            port.levels = compute_levels(port, cycle);
+            update(port, cycle);
         }
     }
     schedule_lines(cycle);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint16_t kSpmcsr = 0x57;
 constexpr uint8_t kSpmie = 0x80, kRwwsb = 0x40, kRwwsre = 0x10, kBlbset = 0x08, kPgwrt = 0x04, kPgers = 0x02;
-constexpr uint8_t kSpmen = 0x01, kCommand = 0x1F;
+constexpr uint8_t kSigrd = 0x20, kSpmen = 0x01, kCommand = 0x3F;
 constexpr uint64_t kArmedCycles = 4;
 constexpr uint64_t kPageCycles = 64'000; // 4 ms; timed by the chip's own oscillator
 
@@ -30,31 +30,50 @@ std::vector<uint8_t> SelfProgramming::vectors() const {
     return {kVectorProgramMemory};
 }
 
+// A command stands for four cycles; SPMEN falls by itself if no SPM comes in time.
 void SelfProgramming::write(uint16_t, uint8_t value, uint64_t cycle) {
     const uint8_t before = byte(kSpmcsr);
-    const bool busy = (before & (kPgwrt | kPgers)) != 0;
     byte(kSpmcsr) =
-        static_cast<uint8_t>((before & kRwwsb) | (value & kSpmie) | ((busy ? before : value) & kCommand));
-    if (!busy && (value & kSpmen) != 0) {
+        static_cast<uint8_t>((before & kRwwsb) | (value & kSpmie) | ((busy_ ? before : value) & kCommand));
+    if (!busy_ && (value & kSpmen) != 0) {
         armed_until_ = cycle + kArmedCycles;
+        core_.schedule.set(Slot::ProgramMemory, armed_until_ + 1);
     }
+    update_access();
     update_requests();
 }
 
-uint32_t SelfProgramming::execute(uint64_t cycle, bool advance_z) {
+uint32_t SelfProgramming::execute(uint32_t word, uint64_t cycle, bool advance_z) {
     Cpu& cpu = core_.cpu;
-    const uint8_t command = byte(kSpmcsr) & kCommand;
-    const bool busy = core_.schedule.due(Slot::ProgramMemory) != kNever;
-    if (cycle > armed_until_ || busy) {
+    if (word < kBootStartWord) {
+        core_.warnings.once("SPM outside the boot section (from 0x3E000 on): no effect");
+        return 1;
+    }
+    if (cycle > armed_until_ || busy_) {
         return 1;
     }
     const uint32_t z = (cpu.data[ops::kRampZ] & 3u) << 16 | ops::pair(&cpu, ops::kZ);
+    start(byte(kSpmcsr) & kCommand, z, cycle);
+    armed_until_ = 0;
+    if (!busy_) {
+        finish_command();
+    }
+    if (advance_z) {
+        ops::set_pair(&cpu, ops::kZ, z + 2);
+    }
+    update_access();
+    return 1;
+}
+
+void SelfProgramming::start(uint8_t command, uint32_t z, uint64_t cycle) {
     if (command == kSpmen) {
-        buffer_[z % kPageBytes & ~1u] = cpu.data[0];
-        buffer_[z % kPageBytes | 1u] = cpu.data[1];
+        buffer_[z % kPageBytes & ~1u] = core_.cpu.data[0];
+        buffer_[z % kPageBytes | 1u] = core_.cpu.data[1];
+        byte(kSpmcsr) &= static_cast<uint8_t>(~kRwwsb); // loading a page opens the flash again
     } else if (command == (kSpmen | kPgers) || command == (kSpmen | kPgwrt)) {
         change_page(z / kPageBytes * kPageBytes, command == (kSpmen | kPgers));
         byte(kSpmcsr) |= kRwwsb;
+        busy_ = true;
         core_.schedule.set(Slot::ProgramMemory, cycle + kPageCycles);
     } else if (command == (kSpmen | kRwwsre)) {
         byte(kSpmcsr) &= static_cast<uint8_t>(~kRwwsb);
@@ -62,15 +81,6 @@ uint32_t SelfProgramming::execute(uint64_t cycle, bool advance_z) {
     } else if (command == (kSpmen | kBlbset)) {
         core_.warnings.once("lock bits written by SPM: kept out of force");
     }
-    armed_until_ = 0;
-    if (core_.schedule.due(Slot::ProgramMemory) == kNever) {
-        byte(kSpmcsr) &= static_cast<uint8_t>(~kCommand);
-    }
-    if (advance_z) {
-        ops::set_pair(&cpu, ops::kZ, z + 2);
-    }
-    update_requests();
-    return 1;
 }
 
 void SelfProgramming::change_page(uint32_t page, bool erase) {
@@ -89,9 +99,39 @@ void SelfProgramming::change_page(uint32_t page, bool erase) {
 }
 
 void SelfProgramming::on_event(Slot, uint64_t) {
+    finish_command();
+    update_access();
+}
+
+void SelfProgramming::finish_command() {
     byte(kSpmcsr) &= static_cast<uint8_t>(~kCommand);
+    busy_ = false;
     core_.schedule.cancel(Slot::ProgramMemory);
     update_requests();
+}
+
+// Whether LPM means the signature, the fuses or the lock bits just now.
+bool SelfProgramming::reads_row() const {
+    const uint8_t command = byte(kSpmcsr) & kCommand;
+    return command == (kSpmen | kBlbset) || command == (kSpmen | kSigrd);
+}
+
+uint8_t SelfProgramming::read_flash(uint32_t address) {
+    if (reads_row()) {
+        core_.warnings.once("signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF");
+        return 0xFF;
+    }
+    if (address < 2 * kBootStartWord) {
+        core_.warnings.once("flash read before it was opened again after a page (RWWSRE): reads as 0xFF");
+        return 0xFF;
+    }
+    return program_->bytes()[address];
+}
+
+// Below the boot section flash cannot be read from a page's start until the program asks for it.
+void SelfProgramming::update_access() {
+    const bool closed = (byte(kSpmcsr) & kRwwsb) != 0 || reads_row();
+    core_.cpu.flash = closed ? nullptr : program_->bytes();
 }
 
 void SelfProgramming::update_requests() {
@@ -101,7 +141,9 @@ void SelfProgramming::update_requests() {
 
 void SelfProgramming::reset(uint64_t) {
     armed_until_ = 0;
+    busy_ = false;
     core_.schedule.cancel(Slot::ProgramMemory);
+    update_access();
 }
 
 } // namespace tilenca::avr

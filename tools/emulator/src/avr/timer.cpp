@@ -56,6 +56,7 @@ constexpr WaveMode kWideModes[16] = {
 
 // Offsets of a wide timer's registers from TCCRnA: TCCRnC, then pairs of bytes from here on.
 constexpr unsigned kWideForce = 2, kWideCount = 4, kWideCapture = 6, kWideCompare = 8, kWideEnd = 14;
+constexpr uint8_t kCaptureSetup = 0xC0; // ICNC and ICES in TCCRnB
 constexpr unsigned kNarrowCount = 2, kNarrowCompare = 3, kNarrowEnd = 5;
 
 } // namespace
@@ -139,8 +140,17 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     } else {
         write_value(address - base_, value);
     }
+    warn_of_capture();
     update_requests();
     reschedule();
+}
+
+// Asked only while the clock runs: before that, the mode may not be complete.
+void Timer::warn_of_capture() {
+    const bool asked = (byte(control_b()) & kCaptureSetup) != 0 || (byte(mask_register_) & kFlagCapture) != 0;
+    if (is_wide() && asked && divisor_ != 0 && counter_.mode().top != Top::Capture) {
+        core_.warnings.once("input capture of timer " + std::to_string(number_) + ": nothing is captured");
+    }
 }
 
 void Timer::write_value(unsigned offset, uint8_t value) {
@@ -161,7 +171,9 @@ void Timer::write_wide(unsigned offset, uint16_t value) {
     if (offset == kWideCount) {
         counter_.set_count(value);
     } else if (offset == kWideCapture) {
-        counter_.set_capture(value);
+        if (counter_.mode().top == Top::Capture) { // the chip, too, ignores the write in any other mode
+            counter_.set_capture(value);
+        }
     } else {
         counter_.set_compare((offset - kWideCompare) / 2, value);
     }

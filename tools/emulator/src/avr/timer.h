@@ -38,6 +38,7 @@ class Timer : public Peripheral, public PinSource {
     void write_value(unsigned offset, uint8_t value);
     uint8_t read_value(unsigned offset);
     void write_wide(unsigned offset, uint16_t value);
+    void warn_of_capture();
     void apply_mode();
     void apply_outputs(uint64_t cycle);
     void apply_clock(uint64_t cycle);

@@ -15,6 +15,8 @@ constexpr Register kRegisters[] = {
     {0x4E, 0xFF, "SPI (SPDR)"},
     {0x51, 0xFF, "on-chip debug register (OCDR)"},
     {0x61, 0x0F, "clock prescaler (CLKPR)"},
+    {0x64, 0xFF, "power reduction (PRR0): everything stays on"},
+    {0x65, 0xFF, "power reduction (PRR1): everything stays on"},
     {0x66, 0xFF, "oscillator calibration (OSCCAL)"},
     {0x74, 0x80, "external memory (XMCRA)"},
     {0xB6, 0x60, "asynchronous clock of timer 2 (ASSR)"},

@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint8_t kRxc = 0x80, kTxc = 0x40, kUdre = 0x20, kFe = 0x10, kDor = 0x08, kUpe = 0x04, kU2x = 0x02;
 constexpr uint8_t kRxcie = 0x80, kTxcie = 0x40, kUdrie = 0x20, kRxen = 0x10, kTxen = 0x08, kUcsz2 = 0x04;
-constexpr uint8_t kRxb8 = 0x02, kTxb8 = 0x01;
+constexpr uint8_t kRxb8 = 0x02, kTxb8 = 0x01, kMpcm = 0x01;
 constexpr unsigned kUbrrLow = 4, kUbrrHigh = 5, kUdr = 6;
 constexpr unsigned kFifo = 2;
 
@@ -52,6 +52,11 @@ unsigned Usart::samples_per_bit() const {
     return (byte(a()) & kU2x) != 0 ? 8 : 16;
 }
 
+uint32_t Usart::bit_cycles() const {
+    const bool is_on = (byte(b()) & (kRxen | kTxen)) != 0;
+    return is_on ? sample_cycles() * samples_per_bit() : 0;
+}
+
 FrameFormat Usart::format() const {
     const uint8_t size = byte(c()) >> 1 & 3;
     const bool nine = (byte(b()) & kUcsz2) != 0;
@@ -66,7 +71,7 @@ uint64_t Usart::next_sample(uint64_t cycle) const {
 }
 
 uint8_t Usart::status() const {
-    uint8_t value = byte(a()) & (kU2x | 1);
+    uint8_t value = byte(a()) & (kU2x | kMpcm);
     value |= sent_flag_ ? kTxc : 0;
     value |= buffer_full_ ? 0 : kUdre;
     if (waiting_ != 0) {
@@ -96,7 +101,10 @@ void Usart::write(uint16_t address, uint8_t value, uint64_t cycle) {
     switch (address - base_) {
     case 0:
         sent_flag_ = sent_flag_ && (value & kTxc) == 0;
-        byte(address) = value & (kU2x | 1);
+        byte(address) = value & (kU2x | kMpcm);
+        if ((value & kMpcm) != 0) {
+            core_.warnings.once("USART in multi-processor mode (MPCM): every frame is received");
+        }
         break;
     case 1:
         write_control(value, cycle);

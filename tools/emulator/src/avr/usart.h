@@ -23,6 +23,8 @@ class Usart : public Peripheral {
 
     PinId receive_pin() const { return receive_pin_; }
     PinId transmit_pin() const { return transmit_pin_; }
+    // Clock cycles one bit takes; 0 while receiver and transmitter are off.
+    uint32_t bit_cycles() const;
     // To be called after edges were pushed on the receiver's wire.
     void line_changed();
     // Edges of the wire before this cycle matter no more.

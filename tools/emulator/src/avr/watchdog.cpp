@@ -57,8 +57,11 @@ void Watchdog::restart(uint64_t cycle) {
     core_.schedule.set(Slot::Watchdog, is_on() ? cycle + ticks * kCyclesPerTick : kNever);
 }
 
+// In "interrupt and reset" mode a second time-out resets, if the interrupt of the first still waits.
 void Watchdog::on_event(Slot, uint64_t cycle) {
-    if ((byte(kWdtcsr) & kWdie) != 0) {
+    const uint8_t control = byte(kWdtcsr);
+    const bool last_chance_gone = (control & kWde) != 0 && (control & kWdif) != 0;
+    if ((control & kWdie) != 0 && !last_chance_gone) {
         byte(kWdtcsr) |= kWdif;
         update_requests();
         restart(cycle);
@@ -68,7 +71,7 @@ void Watchdog::on_event(Slot, uint64_t cycle) {
     }
 }
 
-// In "interrupt and reset" mode the interrupt disarms itself: the next time-out resets.
+// In "interrupt and reset" mode the interrupt disarms itself: the next time-out resets, too.
 void Watchdog::interrupt_taken(uint8_t) {
     byte(kWdtcsr) &= static_cast<uint8_t>(~kWdif);
     if ((byte(kWdtcsr) & kWde) != 0) {

@@ -8,9 +8,27 @@ namespace {
 
 constexpr avr::FrameFormat kFormat{8, 0, 1};
 constexpr unsigned kSamplesPerBit = 16;
+// What terminal programs offer; a tile's divisor comes close to one of these, seldom to the point.
+constexpr double kUsualBauds[] = {300,   600,   1200,  2400,   4800,   9600,   14400,  19200,   28800,
+                                  38400, 57600, 76800, 115200, 230400, 250000, 500000, 1000000, 2000000};
+constexpr double kBaudTolerance = 0.04; // 3.7 % is the worst an Arduino does (230,400 baud)
 constexpr double kAheadTicks = 64; // the tile's last instruction may already have passed the end of its turn
 
 } // namespace
+
+void HostPort::follow(uint32_t bit_cycles) {
+    if (bit_cycles == 0 || bit_cycles == followed_bit_cycles_) {
+        return;
+    }
+    followed_bit_cycles_ = bit_cycles;
+    baud_ = kTicksPerSecond / bit_cycles;
+    for (const double usual : kUsualBauds) {
+        if (std::abs(usual / baud_ - 1) <= kBaudTolerance) {
+            baud_ = usual;
+            return;
+        }
+    }
+}
 
 void HostPort::edge(avr::PinId, uint64_t cycle, bool level) {
     line_.push(static_cast<uint64_t>(std::ceil(clock_.to_ticks(cycle))), level);

@@ -1,4 +1,6 @@
 // The computer's end of a tile's USB serial: 8N1 at an exact baud rate, whatever the tile's clock.
+//
+// Its program is taken to have opened the port at the rate the tile's own program has in mind.
 #pragma once
 
 #include "avr/frame_reader.h"
@@ -21,7 +23,8 @@ class HostPort : public avr::EdgeListener {
 
     HostPort(const Clock& clock, Drive drive) : clock_(clock), drive_(std::move(drive)) {}
 
-    void set_baud(double baud) { baud_ = baud; }
+    // From now on at the rate a tile means whose bits take that many of its cycles; 0: it says nothing.
+    void follow(uint32_t bit_cycles);
     void send(uint8_t byte) { to_send_.push_back(byte); }
     bool all_sent() const { return to_send_.empty(); }
     // Takes part in the time up to `end`, in ticks.
@@ -37,6 +40,7 @@ class HostPort : public avr::EdgeListener {
 
     const Clock& clock_;
     Drive drive_;
+    uint32_t followed_bit_cycles_ = 0;
     double baud_ = 115200;
     std::deque<uint8_t> to_send_;
     double line_free_ = 0;

@@ -44,6 +44,7 @@ void Tile::run_until(double end) {
     if (const uint64_t cycle = clock_.to_cycle(end); cycle != 0) {
         chip_.run_until(cycle);
         note_display();
+        host_.follow(chip_.usart(board::kHostUsart).bit_cycles());
     }
     host_.run_until(end);
 }
