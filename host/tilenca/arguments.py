@@ -60,6 +60,8 @@ def _range(lowest: float, highest: float) -> str:
 positive = number(0.001)
 not_negative = number(0.0)
 count = whole(1)
+share = number(0.0, 1.0)
+seed = whole(0, 2**63 - 1)
 
 
 def add_port_argument(parser: argparse.ArgumentParser) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca import paths
+from tilenca.arguments import count, seed, share
 from tilenca.drawings import Drawings, load_drawings
 from tilenca.errors import BuildError, UsageError
 from tilenca.modelfile import Model, load_model
@@ -57,10 +58,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles'"
     )
     parser.add_argument(
-        "--steps", type=int, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
+        "--steps", type=count, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="runs per drawing (100; emulator: 1)")
-    parser.add_argument("--loss", type=float, default=0.0, metavar="P", help="share of messages lost, 0..1")
+    parser.add_argument("--runs", type=count, metavar="N", help="runs per drawing (100; emulator: 1)")
+    parser.add_argument("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1")
     parser.add_argument(
         "--lost",
         choices=("held", "zero"),
@@ -68,10 +69,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a lost message reads as the last one, or as zero",
     )
     parser.add_argument(
-        "--dead", type=float, default=0.0, metavar="P", help="share of tiles that are dead, 0..1"
+        "--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1"
     )
     parser.add_argument(
-        "--seed", type=int, default=1, metavar="N", help="same seed, same numbers (default 1)"
+        "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
     )
     parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
 
@@ -79,7 +80,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measures and prints."""
     runs = RUNS[args.engine] if args.runs is None else args.runs
-    _check(args, runs)
     model = load_model(args.model)
     drawings = load_drawings(args.shapes, labels=model.labels)
     chosen = np.repeat(np.arange(len(drawings)), runs)
@@ -97,14 +97,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print(report)
     return 0
-
-
-def _check(args: argparse.Namespace, runs: int) -> None:
-    if args.steps < 1 or runs < 1 or args.seed < 0:
-        raise UsageError("--steps and --runs must be at least 1, --seed at least 0")
-    for option in ("loss", "dead"):
-        if not 0 <= getattr(args, option) <= 1:
-            raise UsageError(f"--{option} {getattr(args, option)}: a share is 0 to 1")
 
 
 def _engine(name: str, model: Model) -> Engine:

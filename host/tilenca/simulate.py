@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from tilenca import native
 from tilenca.drawings import Drawings
 from tilenca.modelfile import Model
+from tilenca.protocol import SILENT_PERIODS
+from tilenca.shapes import opposite
 
 TICKS = 20  # resolution of a period on the clock schedule; the shortest latency is two ticks
-HOLD_STEPS = 4  # docs/PROTOCOL.md section 2: a neighbour silent for longer reads as zero
+
 SEED_STATE = 8192  # 1.0 in units of 2^-13
 MESSAGE_SHIFT = 7
 
@@ -198,7 +200,7 @@ class Simulator:
         if self.conditions.loss > 0 and self.conditions.lost == "zero":
             heard[self.random.random(heard.shape[:2]) < self.conditions.loss] = 0
         elif self.conditions.loss > 0:
-            heard[now - self.heard_at[who] > HOLD_STEPS] = 0
+            heard[now - self.heard_at[who] > SILENT_PERIODS] = 0
         seen = np.concatenate((self.own[who], heard.reshape(len(who), 4 * self.engine.channels)), axis=1)
         new = self.engine.update(self.states[who], seen)
         self.states[who] = new
@@ -212,9 +214,8 @@ class Simulator:
                 self.random.random(neighbours.shape) < self.conditions.loss, self.cells, neighbours
             )
         for side in range(4):
-            opposite = (side + 2) % 4
-            self.heard[neighbours[:, side], opposite] = self.own[who]
-            self.heard_at[neighbours[:, side], opposite] = now
+            self.heard[neighbours[:, side], opposite(side)] = self.own[who]
+            self.heard_at[neighbours[:, side], opposite(side)] = now
 
     def _right(self) -> NDArray[np.float32]:
         """(R,) share of living tiles that show their class; a tile shows nothing before its first update."""

@@ -18,6 +18,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from tilenca import paths
+from tilenca.arguments import count, seed, whole
 from tilenca.drawings import load_drawings
 from tilenca.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, Model
@@ -42,17 +43,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
     parser.add_argument("--recipe", default="default", metavar="NAME", help=f"one of: {' '.join(RECIPES)}")
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="same seed, same model (default 1)")
-    parser.add_argument("--iterations", type=int, metavar="N", help="instead of the recipe's")
+    parser.add_argument("--seed", type=seed, default=1, metavar="N", help="same seed, same model (default 1)")
+    parser.add_argument("--iterations", type=count, metavar="N", help="instead of the recipe's")
     parser.add_argument(
-        "--state", type=int, default=21, metavar="C", help="channels of the state (default 21)"
+        "--state",
+        type=whole(2, MAX_CHANNELS),
+        default=21,
+        metavar="C",
+        help="channels of the state (default 21)",
     )
     parser.add_argument(
-        "--hidden", type=int, default=40, metavar="H", help="width of both hidden layers (40)"
+        "--hidden", type=whole(1, MAX_WIDTH), default=40, metavar="H", help="width of both hidden layers (40)"
     )
     parser.add_argument("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
     parser.add_argument(
-        "--validation-runs", type=int, metavar="N", help="runs per drawing, instead of the recipe's"
+        "--validation-runs", type=count, metavar="N", help="runs per drawing, instead of the recipe's"
     )
     parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
     parser.add_argument("--force", action="store_true", help="replace the model in DIR")
@@ -62,14 +67,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Trains, validates, quantises, writes."""
     started = time.monotonic()
-    dimensions = _dimensions(args)
+    dimensions = Dimensions(args.state, args.hidden, args.hidden)
     drawings = load_drawings(args.shapes, dimensions.max_classes)
     recipe = find_recipe(args.recipe)
     if args.iterations is not None:
         recipe = replace(recipe, iterations=args.iterations)
     validation_runs = recipe.validation_runs if args.validation_runs is None else args.validation_runs
-    if recipe.iterations < 1 or validation_runs < 1 or args.seed < 0:
-        raise UsageError("--iterations and --validation-runs must be at least 1, --seed at least 0")
     _check_out(args)
     torch = _import_torch(args.device)
 
@@ -104,14 +107,6 @@ def run(args: argparse.Namespace) -> int:
     _write(args.out, model, metrics, trainer.history)
     _report(args, model, metrics, time.monotonic() - started)
     return 0
-
-
-def _dimensions(args: argparse.Namespace) -> Dimensions:
-    if not 2 <= args.state <= MAX_CHANNELS:
-        raise UsageError(f"--state {args.state}: a state has 2 to {MAX_CHANNELS} channels")
-    if not 1 <= args.hidden <= MAX_WIDTH:
-        raise UsageError(f"--hidden {args.hidden}: a hidden layer has 1 to {MAX_WIDTH} values")
-    return Dimensions(args.state, args.hidden, args.hidden)
 
 
 def _check_out(args: argparse.Namespace) -> None:

@@ -203,10 +203,18 @@ def test_a_label_the_model_does_not_know_is_refused(
 
 @pytest.mark.parametrize(
     "words",
-    [["--loss", "1.5"], ["--dead", "-0.1"], ["--steps", "0"], ["--runs", "0"], ["--model", "nowhere"]],
+    [["--loss", "1.5"], ["--dead", "-0.1"], ["--steps", "0"], ["--runs", "0"], ["--seed", "-1"]],
 )
 def test_values_that_make_no_sense_are_refused(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["evaluate", *words]) == 2
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["evaluate", *words])
+    error = capsys.readouterr().err.strip()
+    assert words[0] in error
+    assert len(error.splitlines()) == 1
+
+
+def test_a_model_that_is_nowhere_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["evaluate", "--model", "nowhere"]) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
 
 

@@ -203,11 +203,8 @@ REFUSALS: list[tuple[str, Refusal]] = [
         lambda shapes, full: ["--shapes", str(shapes), "--out", str(full), "--resume"],
     ),
     ("no recipe 'fast'", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--recipe", "fast"]),
-    ("--state 1", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--state", "1"]),
     ("room for 1;", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--state", "2"]),
-    ("--hidden 128", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--hidden", "128"]),
     ("--device tpu", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--device", "tpu"]),
-    ("must be at least 1", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--iterations", "0"]),
 ]
 
 
@@ -244,3 +241,24 @@ def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:5000])
     with pytest.raises(UsageError, match="damaged checkpoint"):
         trainer().load(path)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--state", "1"],
+        ["--hidden", "128"],
+        ["--iterations", "0"],
+        ["--validation-runs", "x"],
+        ["--seed", "-1"],
+    ],
+)
+def test_values_that_make_no_sense_are_refused(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["train", "--out", str(tmp_path / "out"), *words])
+    error = capsys.readouterr().err.strip()
+    assert words[0] in error
+    assert len(error.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
