@@ -19,6 +19,7 @@ README = (paths.ROOT / "README.md").read_text(encoding="utf-8")
 TRIED: dict[str, tuple[list[str], int]] = {
     "make demo": (["--dry-run"], 0),
     "make test": (["--dry-run"], 0),
+    "make setup-train": (["--dry-run"], 0),
     "tilenca emulate --shape 4 --watch": (["--updates", "30"], 0),
     "tilenca train --shapes my-shapes.toml --out models/mine": (["--recipe", "smoke"], 0),
     "tilenca evaluate --model models/mine --shapes my-shapes.toml": (["--runs", "2", "--steps", "5"], 0),
