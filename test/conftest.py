@@ -1,0 +1,12 @@
+"""What all tests share."""
+
+import signal
+
+
+def pytest_configure() -> None:
+    """Lets Ctrl-C, and the tests' own, reach the programs under test.
+
+    A shell starts background jobs with these signals ignored, and programs pass that on to their children.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
