@@ -27,6 +27,7 @@ help: ## list these targets
 
 setup: setup-demo ## make this clone ready: system packages, .venv, C++ libraries, PlatformIO
 
+setup-train: ## the same, with PyTorch for training
 setup-demo setup-train setup-test setup-check:
 	@sh tools/setup/setup.sh $(@:setup-%=%)
 

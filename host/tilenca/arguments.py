@@ -4,6 +4,9 @@ import argparse
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from tilenca.errors import UsageError
+from tilenca.streams import warn
+
 MAX_COUNT = 1_000_000
 
 
@@ -12,7 +15,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Says what is wrong and where help is; exits with 2."""
-        self.exit(2, f"{self.prog}: {' '.join(message.split())}; see {self.prog} --help\n")
+        warn(f"{self.prog}: {' '.join(message.split())}; see {self.prog} --help")
+        raise SystemExit(UsageError.exit_status)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
         """Refuses what it does not know itself, so that the complaint names the subcommand."""

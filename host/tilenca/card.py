@@ -59,8 +59,8 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
             f"{switches['agreement']:.3f}, {_times(switches['settle'])} |"
         )
     lines += [
-        f"| runs that were wrong at any time after step 60, of {longevity['runs']} of {longevity['steps']} "
-        f"more steps | {longevity['runs_with_a_lapse']} |",
+        f"| runs with a wrong tile at any time after step 60; {longevity['runs']} runs, {longevity['steps']} "
+        f"steps more | {longevity['runs_with_a_lapse']} |",
         f"| steps until all are right and stay so | {_times(metrics['settle']['clock'])} |",
     ]
     if metrics["weights_cut"]:

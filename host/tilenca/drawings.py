@@ -132,6 +132,10 @@ def load_drawings(
     groups: list[int] = []
     found: dict[str, None] = {}
     for group, path in enumerate(paths):
+        if any(path.name == other.name and path.resolve() != other.resolve() for other in paths[:group]):
+            raise UsageError(
+                f"{path}: another file has that name too, and tables name files by it; rename one"
+            )
         task = load_task(path, max_classes)
         for shape in task.shapes:
             twin = next((n for n, other in enumerate(shapes) if other.rows == shape.rows), None)
@@ -149,6 +153,8 @@ def load_drawings(
             if twin is None:  # the same drawing of the same label in two files is one drawing
                 shapes.append(shape)
                 groups.append(group)
+        if group not in groups:
+            raise UsageError(f"{path}: the files before it have all of its drawings; leave it out")
         if max_classes is not None and len(found) > max_classes:
             raise UsageError(
                 f"{path}: {len(found)} classes in all files, but the model's state has room for "

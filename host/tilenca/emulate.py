@@ -37,6 +37,7 @@ NO_BOOTLOADER = "none"
 # A UART that is off by a twentieth understands nothing; twice that is far enough to see it.
 MAX_PPM = 100_000.0
 MAX_BOOT_SPREAD_S = 3600.0
+SETTLING_S = 0.001
 MAX_SECONDS = 86_400.0
 
 # Lays out one shape in tiles.
@@ -137,9 +138,9 @@ def run(args: argparse.Namespace) -> int:
             outcomes = [_watch(lay_out, shape, record) for shape in shapes]
         else:
             outcomes = _run_all(lay_out, shapes, record)
+    _print(args, outcomes)
     for note in sorted({note for outcome in outcomes for note in outcome.notes}):
         warn(f"tilenca: {note}")
-    _print(args, outcomes)
     return 0 if all(outcome.report["all_right"] for outcome in outcomes) else 1
 
 
@@ -258,11 +259,17 @@ def _watch(lay_out: LayOut, shape: Shape, record: Recorder | None) -> Outcome:
 
 def _tell_changes(emulation: Emulation, told: list[int]) -> None:
     """One plain line for every change of a display, for what is not a terminal."""
+    news = []
     for tile in emulation.array:
-        for change in tile.display_changes[told[tile.index] :]:
-            told[tile.index] += 1
-            shown = emulation.label(change.segments) or "nothing"
-            print(f"{change.time_s:8.3f} s  {emulation.shape.name}: tile {tile.index + 1} shows {shown}")
+        changes = tile.display_changes[told[tile.index] :]
+        told[tile.index] += len(changes)
+        # A tile sets its segments one by one: of what it shows within a millisecond only the last counts.
+        for following, change in enumerate(changes, start=1):
+            if following == len(changes) or changes[following].time_s - change.time_s > SETTLING_S:
+                news.append((change.time_s, tile.index, change.segments))
+    for time_s, index, segments in sorted(news):
+        shown = emulation.label(segments) or "nothing"
+        print(f"{time_s:8.3f} s  {emulation.shape.name}: tile {index + 1} shows {shown}")
 
 
 def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:

@@ -168,7 +168,6 @@ def mismatch(emulation: Emulation) -> str | None:
     if hello is None or emulation.all_right or (hello.classes == len(task.labels) and not foreign):
         return None
     return (
-        f"the firmware's model {hello.model_id:04X} knows {hello.classes} labels, {task.path} has "
-        f"{len(task.labels)} ({' '.join(task.labels)}); export the model trained on this file and build: "
-        "tilenca export --model DIR && pio run"
+        f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)}); export "
+        "the model trained on that file and build: tilenca export --model DIR && pio run"
     )

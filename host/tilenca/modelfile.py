@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 
 from tilenca.errors import UsageError
 from tilenca.glyphs import GLYPHS
+from tilenca.paths import DEFAULT_MODEL
 from tilenca.protocol import MAX_CHANNELS as MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
 from tilenca.protocol import crc16
 
 FORMAT = 1
+CHECKPOINT = "checkpoint.pt"  # what an unfinished training run leaves in the directory
 TAPS = 5  # own state, then N, E, S, W
 MAX_WIDTH = 127
 
@@ -106,8 +108,12 @@ def load_model(directory: Path) -> Model:
     try:
         about = json.loads(about_path.read_text(encoding="utf-8"))
     except OSError as error:
+        if (directory / CHECKPOINT).exists():
+            raise UsageError(
+                f"{directory}: holds an unfinished training run; finish it with `tilenca train ... --resume`"
+            ) from error
         raise UsageError(
-            f"{about_path}: {error.strerror}; give a directory that `tilenca train` wrote, like models/digits"
+            f"{about_path}: {error.strerror}; give what `tilenca train` wrote, like {DEFAULT_MODEL}"
         ) from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error

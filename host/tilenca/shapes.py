@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tilenca.errors import UsageError
 from tilenca.glyphs import GLYPHS
+from tilenca.paths import DEFAULT_SHAPES
 from tilenca.protocol import SIDE_LETTERS
 
 TILE = "#"
@@ -117,9 +118,7 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise UsageError(
-            f"{path}: {error.strerror}; give a shape file, such as shapes/digits.toml"
-        ) from error
+        raise UsageError(f"{path}: {error.strerror}; give a shape file, such as {DEFAULT_SHAPES}") from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not UTF-8 text at byte {error.start}; save the file as UTF-8") from error
     try:
@@ -173,7 +172,9 @@ def _label(where: str, table: dict[str, object], labels: list[str]) -> str:
     label = table.get("label")
     if not isinstance(label, str) or label not in GLYPHS:
         shown = "missing" if label is None else repr(label)
-        raise UsageError(f"{where}: label {shown}; a 7-segment digit shows one of {''.join(GLYPHS)}")
+        quoted = isinstance(label, int) and str(label) in GLYPHS
+        remedy = f'write "{label}", in quotes' if quoted else f"a 7-segment digit shows {''.join(GLYPHS)}"
+        raise UsageError(f"{where}: label {shown}; {remedy}")
     for other in labels:
         if other != label and GLYPHS[other] == GLYPHS[label]:
             raise UsageError(

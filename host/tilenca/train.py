@@ -21,13 +21,12 @@ from tilenca import paths
 from tilenca.arguments import count, seed, whole
 from tilenca.drawings import load_drawings
 from tilenca.errors import InterruptedRunError, TilencaError, UsageError
-from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, Model
+from tilenca.modelfile import CHECKPOINT, MAX_CHANNELS, MAX_WIDTH, Dimensions, Model
 from tilenca.recipes import RECIPES, find_recipe
 
 if TYPE_CHECKING:
     from tilenca.training import StepReport, Trainer
 
-CHECKPOINT = "checkpoint.pt"
 CHECKPOINT_EVERY_S = 45.0
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tilenca import cli, native, paths
 from tilenca.drawings import Drawings, load_drawings
+from tilenca.errors import UsageError
 from tilenca.modelfile import load_model
 from tilenca.simulate import Conditions, Course, Simulator, States
 from tilenca.validation import settle_times
@@ -258,3 +259,12 @@ def test_what_the_emulated_tiles_cannot_be_made_to_do_is_refused(
 ) -> None:
     assert cli.main(["evaluate", "--engine", "emulator", *words]) == 2
     assert "tiles as they are" in capsys.readouterr().err
+
+
+def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> None:
+    shapes = tmp_path / "digits.toml"
+    shapes.write_text('[[shape]]\nlabel = "1"\ngrid = "#"\n')
+    with pytest.raises(UsageError, match="another file has that name"):
+        load_drawings([paths.DEFAULT_SHAPES, shapes])
+    with pytest.raises(UsageError, match="all of its drawings"):
+        load_drawings([shapes, shapes])

@@ -88,6 +88,7 @@ def test_an_unknown_shape_lists_the_known_ones(tmp_path: Path) -> None:
         (shape("1", "..", ".."), 4, "no tile"),
         (shape("1", "##") + "\n# note\n" + shape("2", "##"), 8, "drawn exactly like '1'"),
         (shape("@", "##"), 1, "label '@'"),
+        (shape("4", "##").replace('"4"', "4"), 1, 'write "4", in quotes'),
         (shape("10", "##"), 1, "label '10'"),
         (shape("5", "##") + shape("S", "###"), 6, "look the same"),
         ('[[shape]]\nlabel = "1"\n', 1, "has no grid"),
