@@ -116,7 +116,6 @@ def _emulate(
 ) -> Outcome:
     from tilenca.emulation import Conditions as Powering
     from tilenca.emulation import Emulation, firmware_settings
-    from tilenca.protocol import HelloSentence
 
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
@@ -130,17 +129,17 @@ def _emulate(
         powering = Powering(updates=args.steps, seed=args.seed * 1000 + run)
         tissue = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, powering, defaults)
 
-        def check(_: Emulation, heard: list[Any]) -> None:
-            for line in heard:
-                if isinstance(line.sentence, HelloSentence) and line.sentence.model_id != model.model_id:
-                    raise BuildError(
-                        f"{paths.FIRMWARE_ELF}: carries model {line.sentence.model_id:04X}, not "
-                        f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
-                    )
+        def check(running: Emulation, _: list[Any]) -> None:
+            if running.hello is not None and running.hello.model_id != model.model_id:
+                raise BuildError(
+                    f"{paths.FIRMWARE_ELF}: carries model {running.hello.model_id:04X}, not "
+                    f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
+                )
 
-        tissue.run(check)
-        right.append(sum(tissue.shown(tile) == shape.label for tile in tissue.array) / len(shape.cells))
-        updates = tissue.agreed_at_update()
+        with tissue.array:
+            tissue.run(check)
+            right.append(sum(tissue.shown(tile) == shape.label for tile in tissue.array) / len(shape.cells))
+            updates = tissue.agreed_at_update()
         settled.append(math.inf if updates is None else max(updates, 1))
     return Outcome(chosen, np.array(right, np.float32), np.array(settled), np.zeros(len(chosen), np.bool_))
 

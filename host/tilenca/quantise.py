@@ -10,8 +10,7 @@ from torch import Tensor
 
 from tilenca.model import LARGEST, STEPS
 from tilenca.modelfile import Dimensions, Model
-
-STATE_LIMIT, HIDDEN_LIMIT = 127 << 7, 127
+from tilenca.protocol import HIDDEN_MAX, STATE_MAX
 
 
 def quantise(
@@ -62,9 +61,9 @@ class IntegerNet:
         hidden = self._layer(seen.to(torch.float32), weights["w1"], weights["b1"])
         hidden = self._layer(hidden, weights["w2"], weights["b2"])
         change = torch.addmm(weights["b3"], hidden, weights["w3"].t())
-        return (states.to(torch.float32) + change).clamp(-STATE_LIMIT, STATE_LIMIT).to(torch.int16)
+        return (states.to(torch.float32) + change).clamp(-STATE_MAX, STATE_MAX).to(torch.int16)
 
     @staticmethod
     def _layer(inputs: Tensor, weights: Tensor, biases: Tensor) -> Tensor:
         # x / 64 is exact, so floor() is the arithmetic shift.
-        return torch.floor((torch.addmm(biases, inputs, weights.t()) + 32) / 64).clamp(0, HIDDEN_LIMIT)
+        return torch.floor((torch.addmm(biases, inputs, weights.t()) + 32) / 64).clamp(0, HIDDEN_MAX)

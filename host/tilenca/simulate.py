@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from tilenca import native
 from tilenca.drawings import Drawings
 from tilenca.modelfile import Model
-from tilenca.protocol import SILENT_PERIODS
+from tilenca.protocol import MESSAGE_SHIFT, SILENT_PERIODS
 from tilenca.shapes import opposite
 
 TICKS = 20  # resolution of a period on the clock schedule; the shortest latency is two ticks
 
 SEED_STATE = 8192  # 1.0 in units of 2^-13
-MESSAGE_SHIFT = 7
 
 Schedule = Literal["random", "clock"]
 States = NDArray[Any]  # (N, C), of the engine's own type
