@@ -19,19 +19,16 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from numpy.typing import NDArray
 
-from tilenca import paths
+from tilenca import fit, paths, plan
 from tilenca.errors import BuildError, TilencaError
 from tilenca.glyphs import GLYPHS, colour_of_class
-from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Model, load_model
+from tilenca.modelfile import Model, load_model
 
 # Template and, below the firmware's folder, the file it renders.
 TEMPLATES = {"model.h.j2": Path("include/model/model.h"), "model.cpp.j2": Path("src/model/model.cpp")}
-# LPM reaches the low 64 KiB of flash; the vectors and other constants want their part of it.
-MAX_FLASH_BYTES = 60 * 1024
 # The narrowest accumulator of any implementation: 24 bits, signed.
 ACCUMULATOR_MAX = 2**23 - 1
 ACTIVATION_MAX = 127
-LOOK_BYTES = 5
 LINE_WIDTH = 100
 HEADER = re.compile(
     r"// Rendered by `tilenca export` from model ([0-9A-F]{4}); do not edit. Body ([0-9a-f]{16})\n"
@@ -56,11 +53,6 @@ def looks_of(labels: tuple[str, ...]) -> list[Look]:
     ]
 
 
-def flash_bytes(model: Model) -> int:
-    """Bytes of flash that the model's arrays take."""
-    return sum(array.nbytes for array in model.integer.values()) + LOOK_BYTES * len(model.labels)
-
-
 def accumulator_bound(weights: NDArray[np.int8], biases: NDArray[np.int16]) -> int:
     """Largest size an accumulator of this layer can reach, whatever its inputs.
 
@@ -75,22 +67,10 @@ def accumulator_bound(weights: NDArray[np.int8], biases: NDArray[np.int16]) -> i
 def check_fits(model: Model) -> None:
     """Refuses a model that the firmware cannot run.
 
-    The firmware's buffers in SRAM are sized for the greatest widths: no model needs more.
-
     Raises:
         BuildError: too wide, too large, a weight of -128, or an accumulator that could wrap.
     """
-    size = model.dimensions
-    if size.channels > MAX_CHANNELS or max(size.hidden1, size.hidden2) > MAX_WIDTH:
-        raise BuildError(
-            f"the model has {size.channels} channels and hidden layers of {size.hidden1} and {size.hidden2}; "
-            f"the firmware has room for {MAX_CHANNELS} and {MAX_WIDTH}, train a narrower one"
-        )
-    if flash_bytes(model) > MAX_FLASH_BYTES:
-        raise BuildError(
-            f"model {model.model_id:04X}: {flash_bytes(model)} bytes of weights, the firmware has room for "
-            f"{MAX_FLASH_BYTES}; train with a smaller --hidden"
-        )
+    fit.check(model.dimensions, len(model.labels))
     for layer in (1, 2, 3):
         weights, biases = model.integer[f"w{layer}"], model.integer[f"b{layer}"]
         if weights.min() < -ACTIVATION_MAX:
@@ -213,10 +193,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not current")
     parser.add_argument("--force", action="store_true", help="overwrite files that were edited by hand")
     parser.add_argument("--json", action="store_true", help="print one JSON document")
+    plan.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Renders, or checks, the files; prints what was done."""
+    """Renders, or checks, the files, or estimates what a network to be would cost; prints what was done."""
+    if plan.asked(args):
+        return plan.run(args)
     model = load_model(args.model)
     check_fits(model)
     files = render(model)
@@ -225,7 +208,7 @@ def run(args: argparse.Namespace) -> int:
         write_files(args.out, files, args.force)
     report = {
         "files": [str(args.out / path) for path in files],
-        "flash_bytes": flash_bytes(model),
+        "flash_bytes": fit.flash_bytes(model.dimensions, len(model.labels)),
         "model_id": f"{model.model_id:04X}",
         "differing" if args.check else "written": differing,
     }

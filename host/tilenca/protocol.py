@@ -14,6 +14,7 @@ PROTOCOL_VERSION = 1
 KIND_STATE = 0
 
 # Frames between tiles (section 1).
+LINK_BAUD = 38400
 HEADER_SIZE = 4
 CRC_SIZE = 2
 MAX_CHANNELS = 51

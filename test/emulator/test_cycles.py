@@ -1,0 +1,69 @@
+"""What `tilenca.fit` says of a network before it exists, against what the emulated chip then does."""
+
+from pathlib import Path
+
+import pytest
+
+import cycles
+from tilenca import fit, paths
+from tilenca.emulation import cables
+from tilenca.emulator import Array
+from tilenca.modelfile import Dimensions, load_model
+from tilenca.protocol import LinkSentence, TileSentence, settings_block
+from tilenca.telemetry import LineReader
+
+TOLERANCE = 0.03
+RENEW = "run `python tools/cycles.py` and put what it prints into host/tilenca/fit.py"
+
+
+@pytest.fixture(scope="module")
+def unequal(tmp_path_factory: pytest.TempPathFactory) -> tuple[Dimensions, Path]:
+    """An image with widths that the constants were not fitted to."""
+    size = Dimensions(28, 56, 34)
+    return size, cycles.build(size, tmp_path_factory.mktemp("unequal"))
+
+
+def check_cycles(size: Dimensions, elf: Path, period_ms: int) -> None:
+    predicted = fit.estimate(size, 10, period_ms).awake_cycles
+    measured = cycles.awake(elf, period_ms)
+    assert abs(predicted / measured - 1) < TOLERANCE, (
+        f"predicted {predicted:,.0f}, is {measured:,.0f}; {RENEW}"
+    )
+
+
+@pytest.mark.parametrize("period_ms", [100, 250])
+def test_the_shipped_firmware_is_awake_as_long_as_predicted(period_ms: int) -> None:
+    check_cycles(load_model(paths.DEFAULT_MODEL).dimensions, paths.FIRMWARE_ELF, period_ms)
+
+
+@pytest.mark.parametrize("period_ms", [100, 250])
+def test_other_widths_are_awake_as_long_as_predicted(
+    unequal: tuple[Dimensions, Path], period_ms: int
+) -> None:
+    check_cycles(*unequal, period_ms)
+
+
+def test_at_the_shortest_period_tiles_keep_up_and_lose_nothing(unequal: tuple[Dimensions, Path]) -> None:
+    size, elf = unequal
+    period_ms = fit.shortest_period_ms(size)
+    count = len(cycles.CROSS.cells)
+    with Array(
+        elf, count, cables(cycles.CROSS), [900.0, -900, 0, 500, -500], [0, 0.031, 0.012, 0.005, 0.017]
+    ) as array:
+        for tile in array:
+            tile.write_eeprom(0, settings_block(tile.index + 1, period_ms, 0))
+        array.run(1.0)
+        reader = LineReader()
+        reader.feed(array[cycles.MIDDLE].read_serial())
+        array.run(6.0)
+        said = [sentence for _, sentence in reader.feed(array[cycles.MIDDLE].read_serial())]
+    tiles = [sentence for sentence in said if isinstance(sentence, TileSentence)]
+    passed_ms = tiles[-1].uptime_ms - tiles[0].uptime_ms
+    assert tiles[-1].updates - tiles[0].updates == pytest.approx(passed_ms / period_ms, abs=1)
+    links = [sentence for sentence in said if isinstance(sentence, LinkSentence)]
+    last = {link.side: link for link in links}
+    first = {link.side: link for link in reversed(links)}
+    assert len(last) == 4
+    for side, link in last.items():
+        assert link.received - first[side].received > 50
+        assert (link.lost, link.corrupt) == (first[side].lost, first[side].corrupt)
