@@ -18,6 +18,7 @@ from tilenca.streams import check_streams, finish_streams, warn
 COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("tilenca.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.evaluate", "measure how well a model does on shapes"),
+    "plot": ("tilenca.plot", "draw how training went, or a film of what tiles show"),
     "export": ("tilenca.export", "render a model into the firmware's C++ files"),
     "emulate": ("tilenca.emulate", "run the firmware image on one emulated board per tile"),
     "devices": ("tilenca.devices", "list the tiles found on USB"),

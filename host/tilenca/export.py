@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from tilenca import fit, paths, plan
 from tilenca.errors import BuildError, TilencaError
-from tilenca.glyphs import GLYPHS, colour_of_class
+from tilenca.glyphs import GLYPHS, colour_number, colour_of_class
 from tilenca.modelfile import Model, load_model
 
 # Template and, below the firmware's folder, the file it renders.
@@ -46,10 +46,9 @@ class Look:
 
 def looks_of(labels: tuple[str, ...]) -> list[Look]:
     """Glyph and colour of every class; a decimal digit has its own colour wherever it stands."""
-    indices = [int(label) if label in "0123456789" else index for index, label in enumerate(labels)]
     return [
-        Look(label, GLYPHS[label], colour_of_class(index))
-        for label, index in zip(labels, indices, strict=True)
+        Look(label, GLYPHS[label], colour_of_class(colour_number(label, index)))
+        for index, label in enumerate(labels)
     ]
 
 

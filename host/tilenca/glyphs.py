@@ -34,12 +34,36 @@ _PAPER_COLOURS: tuple[tuple[int, int, int], ...] = (
     (40, 12, 60), (50, 50, 0), (55, 0, 0), (75, 25, 30), (25, 15, 15),
 )  # fmt: skip
 
+# How LEDs become colours of a screen.
+SCREEN_GAMMA, SCREEN_PALENESS, SCREEN_PEAK, SCREEN_SHADE = 1.6, 0.3, 0.94, 0.68
+
 
 def colour_of_class(index: int) -> tuple[int, int, int]:
     """RGB duty (0..255 each) of a class; the paper's ten, then the same ones at a third, then at a ninth."""
     red, green, blue = _PAPER_COLOURS[index % len(_PAPER_COLOURS)]
     dim = 3 ** (index // len(_PAPER_COLOURS))
     return (-(-red // dim), -(-green // dim), -(-blue // dim))
+
+
+def colour_number(label: str, index: int) -> int:
+    """The class whose colour a label has: its own, but a decimal digit has one wherever it stands."""
+    return int(label) if label in "0123456789" else index
+
+
+def screen_colour(number: int) -> tuple[float, float, float]:
+    """RGB (0..1 each) in which a screen shows `colour_of_class(number)`.
+
+    As bright as it gets, since LEDs are dim and screens are not, and a little pale; the dimmer repetitions
+    are darker shades.
+    """
+    duty = _PAPER_COLOURS[number % len(_PAPER_COLOURS)]
+    shade = SCREEN_SHADE ** (number // len(_PAPER_COLOURS))
+
+    def brightness(part: int) -> float:
+        lifted: float = (part / max(duty)) ** (1 / SCREEN_GAMMA)
+        return shade * (SCREEN_PALENESS + (SCREEN_PEAK - SCREEN_PALENESS) * lifted)
+
+    return brightness(duty[0]), brightness(duty[1]), brightness(duty[2])
 
 
 def glyph(label: str) -> int:

@@ -55,7 +55,7 @@ def test_every_launcher_is_its_command(launcher: Path) -> None:
 def test_commands_without_tensors_do_not_import_torch() -> None:
     program = (
         "import importlib, sys\n"
-        "for name in ('emulate', 'export', 'evaluate', 'devices', 'flash', 'monitor'):\n"
+        "for name in ('emulate', 'export', 'evaluate', 'plot', 'devices', 'flash', 'monitor'):\n"
         "    importlib.import_module('tilenca.' + name)\n"
         "sys.exit('torch' in sys.modules)\n"
     )
