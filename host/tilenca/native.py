@@ -1,11 +1,13 @@
 """The firmware's own core, compiled for this machine: exact states, fast.
 
-`make setup` builds the library from firmware/src/core; nothing is computed in Python here.
+`make setup` builds the library from firmware/include/core and tools/simulator; nothing is computed in Python
+here.
 """
 
 import ctypes
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,29 +19,60 @@ from tilenca.modelfile import TAPS, Model
 LIBRARY = paths.BUILD / "simulator" / "libtilenca_core.so"
 
 
-class _CModel(ctypes.Structure):
-    """`TilencaModel` of tools/simulator/core_api.cpp."""
+class CModel(ctypes.Structure):
+    """`TilencaModel` of tools/simulator/core_api.cpp, good for as long as the arrays it was made of."""
 
     _fields_ = (
-        ("channels", ctypes.c_uint8),
-        ("hidden1", ctypes.c_uint8),
-        ("hidden2", ctypes.c_uint8),
+        *((name, ctypes.c_uint8) for name in ("channels", "hidden1", "hidden2", "classes")),
         *((f"{kind}{layer}", ctypes.c_void_p) for layer in (1, 2, 3) for kind in "wb"),
     )
+
+    @classmethod
+    def of(cls, model: Model) -> "CModel":
+        """The model's sizes, and the addresses of its integer weights."""
+        weights = [np.ascontiguousarray(model.integer[name]) for name in model.dimensions.shapes()]
+        size = model.dimensions
+        made = cls(size.channels, size.hidden1, size.hidden2, len(model.labels), *map(address, weights))
+        made.weights = weights  # lives as long as the bare addresses do
+        return made
+
+
+def address(array: NDArray[Any]) -> int:
+    """Where a contiguous array begins; the caller keeps it alive."""
+    return int(array.ctypes.data)
 
 
 @cache
 def _library(path: Path) -> ctypes.CDLL:
     if not path.is_file():
         raise BuildError(f"{path}: not built yet; run: make setup")
+    pointer, count = ctypes.c_void_p, ctypes.c_int32
     try:
         library = ctypes.CDLL(str(path))
-        update_cells = library.tilenca_update_cells
+        for name, arguments, result in (
+            ("update_cells", [ctypes.POINTER(CModel), pointer, pointer, ctypes.c_size_t], None),
+            ("tissue_new", [ctypes.POINTER(CModel), pointer, pointer, pointer], pointer),
+            ("tissue_delete", [pointer], None),
+            ("tissue_run", [pointer, count, count, pointer, pointer], None),
+            ("tissue_updates", [pointer], ctypes.c_uint64),
+            ("plan_new", [pointer], pointer),
+            ("plan_delete", [pointer], None),
+            ("plan_next", [pointer, pointer], count),
+        ):
+            function = getattr(library, f"tilenca_{name}")
+            function.argtypes, function.restype = arguments, result
     except (OSError, AttributeError) as error:
         raise BuildError(f"{path}: not usable ({error}); remove it and run: make setup") from error
-    update_cells.argtypes = [ctypes.POINTER(_CModel), ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t]
-    update_cells.restype = None
     return library
+
+
+def library() -> ctypes.CDLL:
+    """The compiled simulator.
+
+    Raises:
+        BuildError: it is not built, or another one; the message says how to build it.
+    """
+    return _library(LIBRARY)
 
 
 def update_cells(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8]) -> NDArray[np.int16]:
@@ -63,15 +96,9 @@ def update_cells(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int
     if inputs.dtype != np.int8 or inputs.shape != (*states.shape[:-1], TAPS * channels):
         wanted = (*states.shape[:-1], TAPS * channels)
         raise ValueError(f"inputs are {inputs.dtype} {inputs.shape}, the states need int8 {wanted}")
-    library = _library(LIBRARY)
-    # The arrays must stay alive during the call: the structure holds bare addresses.
-    weights = [np.ascontiguousarray(model.integer[name]) for name in model.dimensions.shapes()]
-    size = model.dimensions
-    c_model = _CModel(size.channels, size.hidden1, size.hidden2, *(array.ctypes.data for array in weights))
     new_states = np.array(states, dtype=np.int16, order="C")
     flat_inputs = np.ascontiguousarray(inputs)
-    count = new_states.size // channels
-    library.tilenca_update_cells(
-        ctypes.byref(c_model), new_states.ctypes.data, flat_inputs.ctypes.data, count
+    library().tilenca_update_cells(
+        CModel.of(model), address(new_states), address(flat_inputs), new_states.size // channels
     )
     return new_states

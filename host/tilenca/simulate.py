@@ -1,67 +1,29 @@
 """Tissues of tiles on the schedule of real tiles or of the paper, thousands at a time.
 
 A `Simulator` owns many runs side by side as one flat list of cells. What a cell computes is an `Engine`: the
-firmware's own core (`FastEngine`), or tensors (`tilenca.tensors`). numpy only.
+firmware's own core (`FastEngine`), which is compiled together with the schedule (`tilenca.tissue`), or
+anything else, such as tensors (`tilenca.tensors`), which follows the same schedule in numpy
+(`tilenca.rounds`).
 """
 
-from collections.abc import Iterator
+import os
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca import native
-from tilenca.drawings import Drawings
-from tilenca.modelfile import Model
-from tilenca.protocol import MESSAGE_SHIFT, SILENT_PERIODS
-from tilenca.shapes import opposite
-
-TICKS = 20  # resolution of a period on the clock schedule; the shortest latency is two ticks
-
-SEED_STATE = 8192  # 1.0 in units of 2^-13
+from tilenca.drawings import Batch, Drawings
+from tilenca.engines import Engine as Engine
+from tilenca.engines import FastEngine as FastEngine
+from tilenca.engines import States as States
+from tilenca.rounds import RoundByRound
+from tilenca.tissue import DARK, NOBODY, Setup, Tissue
 
 Schedule = Literal["random", "clock"]
-States = NDArray[Any]  # (N, C), of the engine's own type
 
-
-class Engine(Protocol):
-    """What one cell computes, for many cells at once."""
-
-    channels: int
-    classes: int
-
-    def seed(self, cells: int) -> States:
-        """(cells, C) states of tiles that were just switched on."""
-
-    def message(self, states: States) -> States:
-        """(N, C) what cells send, and see of themselves."""
-
-    def update(self, states: States, seen: States) -> States:
-        """(N, C) new states from the old ones and (N, 5 C) messages: own, N, E, S, W."""
-
-
-class FastEngine:
-    """The firmware's portable core: every state to the bit as on a tile."""
-
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.channels = model.dimensions.channels
-        self.classes = len(model.labels)
-
-    def seed(self, cells: int) -> NDArray[np.int16]:
-        """(cells, C) int16, the seed state."""
-        states = np.zeros((cells, self.channels), np.int16)
-        states[:, 0] = SEED_STATE
-        return states
-
-    def message(self, states: States) -> NDArray[np.int8]:
-        """(N, C) int8, stored states rounded to their message."""
-        return ((states.astype(np.int32) + (1 << MESSAGE_SHIFT - 1)) >> MESSAGE_SHIFT).astype(np.int8)
-
-    def update(self, states: States, seen: States) -> NDArray[np.int16]:
-        """(N, C) int16, one update by the firmware's core."""
-        return native.update_cells(self.model, states, seen)
+# Cell updates between two looks at the rest of the world, such as Ctrl-C: some tenths of a second.
+ATTENTION = 500_000
 
 
 @dataclass(frozen=True)
@@ -72,11 +34,15 @@ class Conditions:
         schedule: "random": twice per step a random half of the tiles updates and is heard at once (the
             paper's sampler); "clock": each tile has its phase, period and latency, and starts when it will.
         loss: share of messages lost, 0..1.
-        lost: what is read instead of a lost message: the last one "held" (as tiles do), or "zero".
+        lost: what is read instead of a lost message: the last one "held" until its sender was silent for
+            `SILENT_PERIODS` steps (as tiles do), or "zero".
         dead: share of tiles that are silent and dark from the start; they are not counted.
         drift: largest relative difference of a tile's period from the nominal one.
-        latency: least and most time a tile's message takes.
+        latency: least and most time a tile's message takes, less than the shortest period.
         boot: tiles are switched on within this time of each other; step 0 is when the last one is.
+
+    Raises:
+        ValueError: a value is out of range.
     """
 
     schedule: Schedule = "random"
@@ -87,6 +53,48 @@ class Conditions:
     latency: tuple[float, float] = (0.1, 0.9)
     boot: float = 10.0
 
+    def __post_init__(self) -> None:
+        if self.schedule not in ("random", "clock") or self.lost not in ("held", "zero"):
+            raise ValueError(f"no such schedule or loss: {self.schedule!r}, {self.lost!r}")
+        if not (0 <= self.loss <= 1 and 0 <= self.dead <= 1):
+            raise ValueError(f"loss {self.loss} and dead {self.dead} must be shares, 0..1")
+        if self.drift < 0 or self.boot < 0 or not 0 < self.latency[0] <= self.latency[1] < 1 - self.drift:
+            raise ValueError(
+                f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "
+                "message arrives before its sender sends the next"
+            )
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What happens to one tile of each run, which then is not asked any more what it shows.
+
+    Attributes:
+        kind: "dead": silent and dark from step `begin` on; "stuck": does not update from then on, but goes on
+            sending the state it had; "away": switched off then, and on again at `end`, in the seed state.
+        tiles: (R,) which tile of its drawing, -1 for none of that run.
+        begin: number of steps that come before; 0: from before the first tile is switched on.
+        end: number of steps that come before a tile that was away is back.
+
+    Raises:
+        ValueError: the steps do not fit the kind.
+    """
+
+    kind: Literal["dead", "stuck", "away"]
+    tiles: NDArray[np.int64]
+    begin: int = 0
+    end: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("dead", "stuck", "away"):
+            raise ValueError(f"no such fault: {self.kind!r}")
+        if self.begin < 0 or (self.end is not None) != (self.kind == "away"):
+            raise ValueError(
+                f"fault {self.kind!r}: begin is {self.begin}, end is {self.end}; only 'away' ends"
+            )
+        if self.end is not None and self.end <= self.begin:
+            raise ValueError(f"fault: ends at {self.end}, but begins at {self.begin}")
+
 
 @dataclass(frozen=True)
 class Course:
@@ -94,9 +102,11 @@ class Course:
 
     Attributes:
         right: (T, R) float32, share of the run's living tiles that show its class after each step.
+        shown: (T, N) int8, the class each tile shows after each step, -1 for dark; None: not recorded.
     """
 
     right: NDArray[np.float32]
+    shown: NDArray[np.int8] | None = None
 
     @property
     def agreed(self) -> NDArray[np.bool_]:
@@ -112,15 +122,26 @@ class Course:
 
 
 class Simulator:
-    """R runs side by side.
+    """R runs side by side, which know nothing of each other.
 
     Args:
         engine: what a cell computes.
         drawings: the task.
         chosen: (R,) the drawing of each run.
         conditions: what the tiles have to live with.
-        random: the only source of chance.
+        random: the only source of chance; it is asked here only, not while the runs go on.
         states: (N, C) to start from, cells in the order of `drawings.batch(chosen)`; None: the seed state.
+        fault: what happens to one tile of each run; None: nothing.
+        threads: how many to use, None: one per processor; results do not depend on it.
+
+    Attributes:
+        batch: the cells.
+        states: (N, C) states of now; not to be written to.
+        shown: (N,) int8, the class each tile shows now, -1 for dark.
+        alive: (N,) whether a tile is not one of `conditions.dead`.
+
+    Raises:
+        ValueError: `fault` does not fit the runs, or leaves nobody to ask.
     """
 
     def __init__(
@@ -131,97 +152,94 @@ class Simulator:
         conditions: Conditions,
         random: np.random.Generator,
         states: States | None = None,
+        *,
+        fault: Fault | None = None,
+        threads: int | None = None,
     ) -> None:
-        self.engine, self.conditions, self.random = engine, conditions, random
+        self.threads = _processors() if threads is None else threads
         self.batch = batch = drawings.batch(chosen)
         self.cells = cells = len(batch.sample)
-        self.states = engine.seed(cells) if states is None else states.copy()
-        self.own = engine.message(self.states)
-        # What each cell holds of its N, E, S, W neighbour, and since when; the last row is nobody's.
-        self.heard = np.zeros((cells + 1, 4, engine.channels), self.own.dtype)
-        self.heard_at = np.full((cells + 1, 4), -np.inf)
-        self.alive = self._draw_alive()
-        self.updated = np.zeros(cells, np.bool_)
-        self._rounds = self._random_rounds() if conditions.schedule == "random" else self._clock_rounds()
+        self.states = engine.seed(cells) if states is None else np.array(states, order="C")
+        self.shown = np.full(cells, DARK, np.int8)
+        self.alive = _draw_alive(batch, conditions.dead, random)
+        faulty = _faulty(batch, fault)
+        setup = Setup(
+            starts=np.append(batch.starts, cells),
+            neighbours=batch.neighbours,
+            alive=self.alive,
+            target=batch.target,
+            seeds=random.integers(1 << 64, size=len(batch.starts), dtype=np.uint64),
+            loss=conditions.loss,
+            zeros=conditions.lost == "zero",
+            clocks=_draw_clocks(batch, conditions, random) if conditions.schedule == "clock" else None,
+            fault=fault.kind if fault else "none",
+            faulty=faulty,
+            begin=fault.begin if fault else 0,
+            end=(fault.end or 0) if fault else 0,
+        )
+        asked = self.alive.copy()
+        asked[faulty[faulty != NOBODY]] = False
+        if not np.logical_or.reduceat(asked, batch.starts).all():
+            raise ValueError("fault: a run has no other living tile, and nobody is left to ask")
+        self._life: Tissue | RoundByRound
+        if isinstance(engine, FastEngine):
+            self._life = Tissue(engine.model, setup, self.states, self.shown)
+        else:
+            self._life = RoundByRound(engine, setup, self.states, self.shown)
 
-    def run(self, steps: int) -> Course:
-        """Lives on for some steps."""
+    def run(self, steps: int, record: bool = False) -> Course:
+        """Lives on for some steps.
+
+        Args:
+            steps: how many.
+            record: whether to keep what every tile shows after each step.
+        """
         right = np.empty((steps, len(self.batch.starts)), np.float32)
-        for step in range(steps):
-            next(self._rounds)
-            right[step] = self._right()
-        return Course(right)
+        shown = np.empty((steps, self.cells), np.int8) if record else None
+        stride = max(1, ATTENTION * self.threads // self.cells)
+        for step in range(0, steps, stride):
+            part = slice(step, step + stride)
+            self._life.run(right[part], None if shown is None else shown[part], self.threads)
+        return Course(right, shown)
 
-    def _draw_alive(self) -> NDArray[np.bool_]:
-        batch = self.batch
-        draws = self.random.random(self.cells)
-        # At least one tile of every run lives, or there would be nobody to ask.
-        luckiest = np.maximum.reduceat(draws, batch.starts)[batch.sample]
-        alive: NDArray[np.bool_] = (draws >= self.conditions.dead) | (draws == luckiest)
-        return alive
+    @property
+    def updates(self) -> int:
+        """How many cell updates were computed in all."""
+        return self._life.updates
 
-    def _random_rounds(self) -> Iterator[None]:
-        everybody = np.flatnonzero(self.alive)
-        self._send(everybody, 0.0)
-        now = 0.0
-        while True:
-            for _ in range(2):
-                now += 0.5
-                who = everybody[self.random.random(len(everybody)) < 0.5]
-                self._update(who, now)
-                self._send(who, now)
-            yield
 
-    def _clock_rounds(self) -> Iterator[None]:
-        conditions, random, batch = self.conditions, self.random, self.batch
-        boot = random.uniform(0, conditions.boot, self.cells)
-        boot -= np.maximum.reduceat(boot, batch.starts)[batch.sample]
-        period = 1 + random.uniform(-conditions.drift, conditions.drift, self.cells)
-        latency = random.uniform(*conditions.latency, self.cells)
-        update_at = np.where(self.alive, boot + period * random.random(self.cells), np.inf)
-        arrive_at = np.full(self.cells, np.inf)
-        tick = -int(np.ceil(conditions.boot)) * TICKS
-        while True:
-            tick += 1
-            now = tick / TICKS
-            arriving = np.flatnonzero(arrive_at <= now)
-            self._send(arriving, now)
-            arrive_at[arriving] = np.inf
-            who = np.flatnonzero(update_at <= now)
-            self._update(who, now)
-            arrive_at[who] = update_at[who] + latency[who]
-            update_at[who] += period[who]
-            if tick > 0 and tick % TICKS == 0:
-                yield
+def _processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
-    def _update(self, who: NDArray[np.int64], now: float) -> None:
-        heard = self.heard[who]
-        if self.conditions.loss > 0 and self.conditions.lost == "zero":
-            heard[self.random.random(heard.shape[:2]) < self.conditions.loss] = 0
-        elif self.conditions.loss > 0:
-            heard[now - self.heard_at[who] > SILENT_PERIODS] = 0
-        seen = np.concatenate((self.own[who], heard.reshape(len(who), 4 * self.engine.channels)), axis=1)
-        new = self.engine.update(self.states[who], seen)
-        self.states[who] = new
-        self.own[who] = self.engine.message(new)
-        self.updated[who] = True
 
-    def _send(self, who: NDArray[np.int64], now: float) -> None:
-        neighbours = self.batch.neighbours[who]
-        if self.conditions.loss > 0 and self.conditions.lost == "held":
-            neighbours = np.where(
-                self.random.random(neighbours.shape) < self.conditions.loss, self.cells, neighbours
-            )
-        for side in range(4):
-            self.heard[neighbours[:, side], opposite(side)] = self.own[who]
-            self.heard_at[neighbours[:, side], opposite(side)] = now
+def _draw_alive(batch: Batch, dead: float, random: np.random.Generator) -> NDArray[np.bool_]:
+    draws = random.random(len(batch.sample))
+    # At least one tile of every run lives, or there would be nobody to ask.
+    luckiest = np.maximum.reduceat(draws, batch.starts)[batch.sample]
+    alive: NDArray[np.bool_] = (draws >= dead) | (draws == luckiest)
+    return alive
 
-    def _right(self) -> NDArray[np.float32]:
-        """(R,) share of living tiles that show their class; a tile shows nothing before its first update."""
-        scores = self.states[:, -self.engine.classes :]
-        right = (scores.argmax(axis=1) == self.batch.target) & self.updated & self.alive
-        starts = self.batch.starts
-        return (
-            np.add.reduceat(right, starts, dtype=np.float32)
-            / np.add.reduceat(self.alive, starts, dtype=np.float32)
-        ).astype(np.float32)
+
+def _draw_clocks(
+    batch: Batch, conditions: Conditions, random: np.random.Generator
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
+    """First update, period and latency of every cell, and when the first one is switched on, in steps."""
+    cells = len(batch.sample)
+    boot = random.uniform(0, conditions.boot, cells)
+    boot -= np.maximum.reduceat(boot, batch.starts)[batch.sample]
+    period = 1 + random.uniform(-conditions.drift, conditions.drift, cells)
+    latency = random.uniform(*conditions.latency, cells)
+    return boot + period * random.random(cells), period, latency, -np.ceil(conditions.boot)
+
+
+def _faulty(batch: Batch, fault: Fault | None) -> NDArray[np.int64]:
+    """(R,) the cell with the fault in each run, `NOBODY` for none."""
+    runs = len(batch.starts)
+    if fault is None:
+        return np.full(runs, NOBODY, np.int64)
+    sizes = np.bincount(batch.sample, minlength=runs)
+    tiles = np.asarray(fault.tiles)
+    if tiles.shape != (runs,) or not ((tiles >= NOBODY) & (tiles < sizes)).all():
+        raise ValueError(f"fault: {runs} runs need as many tiles, each a number in its drawing or {NOBODY}")
+    return np.where(tiles == NOBODY, NOBODY, batch.starts + tiles)

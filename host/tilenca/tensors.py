@@ -4,10 +4,10 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from tilenca.engines import ExactEngine, States
 from tilenca.model import TileNet
 from tilenca.modelfile import Model
 from tilenca.quantise import IntegerNet
-from tilenca.simulate import FastEngine, States
 
 
 class FloatEngine:
@@ -38,8 +38,8 @@ class FloatEngine:
         return self.net.update(torch.from_numpy(states), torch.from_numpy(seen), fires, self.weights).numpy()
 
 
-class IntegerEngine(FastEngine):
-    """`FastEngine` without the compiled core: the same states, by `IntegerNet`."""
+class IntegerEngine(ExactEngine):
+    """The same states as `FastEngine`, by `IntegerNet`."""
 
     def __init__(self, model: Model) -> None:
         super().__init__(model)

@@ -133,8 +133,14 @@ def test_a_tile_shows_nothing_before_its_first_update() -> None:
     simulator = Simulator(
         Sleeper(), drawings, np.array([zero]), Conditions("random"), np.random.default_rng(1)
     )
-    assert simulator._right().tolist() == [0.0]
-    assert simulator.run(20).right[-1].tolist() == [1.0]
+    course = simulator.run(20, record=True)
+    assert course.shown is not None
+    # A random half updates at a time: some have not yet in the first step, and are dark.
+    dark = course.shown[0] == -1
+    assert 0 < dark.sum() < len(dark)
+    assert course.right[0] == pytest.approx(1 - dark.mean())
+    assert not course.shown[-1].any()
+    assert course.right[-1].tolist() == [1.0]
 
 
 def test_settled_is_the_first_step_from_which_all_stay_right() -> None:

@@ -1,8 +1,16 @@
-// The firmware's core behind a C interface, for models of any size: host/tilenca/native.py calls it.
+// The simulator behind a C interface, for models of any size: host/tilenca/native.py and tissue.py call it.
 #include <stddef.h>
 #include <stdint.h>
 
+#include <vector>
+
 #include "core/network.h"
+#include "schedule.h"
+#include "setup.h"
+#include "tissue.h"
+#include "update.h"
+
+#define TILENCA_API __attribute__((visibility("default")))
 
 extern "C" {
 
@@ -11,6 +19,7 @@ struct TilencaModel {
     uint8_t channels;
     uint8_t hidden1;
     uint8_t hidden2;
+    uint8_t classes;
     const int8_t* w1;
     const int16_t* b1;
     const int8_t* w2;
@@ -19,23 +28,95 @@ struct TilencaModel {
     const int16_t* b3;
 };
 
+// A round as arrays that are good until the next one is asked for; events are pairs of a cell and its sides.
+struct TilencaRound {
+    const int32_t* gone;
+    const int32_t* born;
+    const tilenca::Event* arrivals;
+    const tilenca::Event* updates;
+    int32_t gone_count;
+    int32_t born_count;
+    int32_t arrivals_count;
+    int32_t updates_count;
+};
+}
+
+namespace {
+
+tilenca::PackedNetwork packed(const TilencaModel& m) {
+    const uint8_t wide = tilenca::kTaps * m.channels;
+    return {m.channels,
+            {wide, m.hidden1, m.w1, m.b1},
+            {m.hidden1, m.hidden2, m.w2, m.b2},
+            {m.hidden2, m.channels, m.w3, m.b3}};
+}
+
+// A schedule for those who have states of their own kind.
+struct Plan {
+    explicit Plan(const TilencaSetup& given)
+        : setup(given), schedule(tilenca::make_schedule(setup, 0, setup.runs)) {}
+
+    TilencaSetup setup;
+    std::unique_ptr<tilenca::Schedule> schedule;
+    tilenca::Round round;
+};
+
+} // namespace
+
+extern "C" {
+
 // Updates `count` cells in place: states[count][C], inputs[count][5 C] (own message, then N, E, S, W).
-__attribute__((visibility("default"))) void tilenca_update_cells(const TilencaModel* model, int16_t* states,
-                                                                 const int8_t* inputs, size_t count) {
-    using tilenca::FlashView;
-    const uint8_t wide = tilenca::kTaps * model->channels;
-    const tilenca::Network network = {
-        {wide, model->hidden1, FlashView<int8_t>(model->w1), FlashView<int16_t>(model->b1)},
-        {model->hidden1, model->hidden2, FlashView<int8_t>(model->w2), FlashView<int16_t>(model->b2)},
-        {model->hidden2, model->channels, FlashView<int8_t>(model->w3), FlashView<int16_t>(model->b3)},
-    };
-    tilenca::Forward forward(network);
+TILENCA_API void tilenca_update_cells(const TilencaModel* model, int16_t* states, const int8_t* inputs,
+                                      size_t count) {
+    const size_t wide = tilenca::kTaps * model->channels;
+    std::vector<tilenca::CellUpdate> updates(count);
     for (size_t i = 0; i < count; ++i) {
-        forward.begin(inputs + i * wide, states + i * model->channels);
-        while (!forward.done()) {
-            forward.step();
-        }
+        updates[i] = {inputs + i * wide, states + i * model->channels, 0};
     }
+    tilenca::update_cells(packed(*model), updates.data(), count);
+}
+
+// See tilenca::Tissue; the model's weights are copied.
+TILENCA_API tilenca::Tissue* tilenca_tissue_new(const TilencaModel* model, const TilencaSetup* setup,
+                                                int16_t* states, int8_t* shown) {
+    return new tilenca::Tissue(packed(*model), model->classes, *setup, states, shown);
+}
+
+TILENCA_API void tilenca_tissue_delete(tilenca::Tissue* tissue) {
+    delete tissue;
+}
+
+TILENCA_API void tilenca_tissue_run(tilenca::Tissue* tissue, int32_t steps, int32_t threads, float* right,
+                                    int8_t* shown) {
+    tissue->run(steps, threads, {right, shown});
+}
+
+TILENCA_API uint64_t tilenca_tissue_updates(const tilenca::Tissue* tissue) {
+    return tissue->updates();
+}
+
+TILENCA_API void* tilenca_plan_new(const TilencaSetup* setup) {
+    return new Plan(*setup);
+}
+
+TILENCA_API void tilenca_plan_delete(void* plan) {
+    delete static_cast<Plan*>(plan);
+}
+
+// Plans a round; 1 when it is the last one of a step.
+TILENCA_API int32_t tilenca_plan_next(void* opaque, TilencaRound* out) {
+    Plan& plan = *static_cast<Plan*>(opaque);
+    const bool last = plan.schedule->next(plan.round);
+    const tilenca::Round& round = plan.round;
+    *out = {round.gone.data(),
+            round.born.data(),
+            round.arrivals.data(),
+            round.updates.data(),
+            static_cast<int32_t>(round.gone.size()),
+            static_cast<int32_t>(round.born.size()),
+            static_cast<int32_t>(round.arrivals.size()),
+            static_cast<int32_t>(round.updates.size())};
+    return last;
 }
 
 } // extern "C"

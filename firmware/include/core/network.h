@@ -18,7 +18,8 @@ constexpr uint8_t kMaxInputs = kTaps * kMaxChannels; // 255: counters fit a uint
 constexpr int16_t kMessageMax = 127;
 constexpr uint8_t kMessageShift = 7; // stored state 2^-13, message 2^-6
 constexpr int16_t kStateMax = kMessageMax << kMessageShift;
-constexpr uint8_t kHiddenShift = 6; // accumulator 2^-12, activation 2^-6
+constexpr int16_t kSeedState = 1 << 13; // 1.0, in channel 0 of a cell that was just switched on
+constexpr uint8_t kHiddenShift = 6;     // accumulator 2^-12, activation 2^-6
 constexpr int8_t kHiddenMax = 127;
 
 // One dense layer: `outputs` rows of `inputs` int8 weights each, and an int16 bias per row.
@@ -27,6 +28,11 @@ struct Layer {
     uint8_t outputs;
     FlashView<int8_t> weights;
     FlashView<int16_t> biases;
+
+    FlashBytes row(uint8_t output) const {
+        return weights.bytes_from(static_cast<uint16_t>(output) * inputs);
+    }
+    int16_t bias(uint8_t output) const { return biases[output]; }
 };
 
 // 5 C -> H1 -> H2 -> C. A view: the weights belong to the exported model (or, on the host, to the caller).
@@ -42,6 +48,9 @@ struct Network {
 inline int8_t message_of(int16_t state) {
     return static_cast<int8_t>((state + (1 << (kMessageShift - 1))) >> kMessageShift);
 }
+
+// The class with the greatest of the stored scores, the lowest among equals.
+uint8_t best_class(const int16_t* scores, uint8_t classes);
 
 // Outputs [from, to) of a hidden layer, each 0..127.
 void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs);

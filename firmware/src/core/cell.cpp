@@ -4,12 +4,6 @@
 
 namespace tilenca {
 
-namespace {
-
-constexpr int16_t kSeedState = 1 << 13; // 1.0
-
-} // namespace
-
 Cell::Cell(const Network& network) : network_(network), forward_(network) {
     seed();
 }
@@ -47,14 +41,7 @@ bool Cell::update_slice() {
 }
 
 uint8_t Cell::best_class(uint8_t classes) const {
-    const int16_t* scores = state_ + channels() - classes;
-    uint8_t best = 0;
-    for (uint8_t k = 1; k < classes; ++k) {
-        if (scores[k] > scores[best]) {
-            best = k;
-        }
-    }
-    return best;
+    return tilenca::best_class(state_ + channels() - classes, classes);
 }
 
 void Cell::tell() {

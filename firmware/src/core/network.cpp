@@ -1,43 +1,33 @@
 #include "core/network.h"
 
+#include "core/arithmetic.h"
+
 namespace tilenca {
 
 namespace {
-
-// 32 bits hold it with room to spare: 255 products of at most 127 * 127 and a 16-bit bias need 23.
-int32_t accumulate(const Layer& layer, uint8_t output, const int8_t* inputs) {
-    FlashBytes row = layer.weights.bytes_from(static_cast<uint16_t>(output) * layer.inputs);
-    int32_t sum = layer.biases[output];
-    for (uint8_t i = 0; i < layer.inputs; ++i) {
-        sum += static_cast<int16_t>(row.next() * inputs[i]);
-    }
-    return sum;
-}
 
 uint8_t smaller(uint8_t a, uint8_t b) {
     return a < b ? a : b;
 }
 
-int16_t clamp(int32_t value, int16_t low, int16_t high) {
-    if (value < low) {
-        return low;
-    }
-    return value > high ? high : static_cast<int16_t>(value);
-}
-
 } // namespace
 
-void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs) {
-    for (uint8_t j = from; j < to; ++j) {
-        const int32_t rounded = (accumulate(layer, j, inputs) + (1 << (kHiddenShift - 1))) >> kHiddenShift;
-        outputs[j] = static_cast<int8_t>(clamp(rounded, 0, kHiddenMax));
+uint8_t best_class(const int16_t* scores, uint8_t classes) {
+    uint8_t best = 0;
+    for (uint8_t k = 1; k < classes; ++k) {
+        if (scores[k] > scores[best]) {
+            best = k;
+        }
     }
+    return best;
+}
+
+void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs) {
+    hidden_outputs<OneCell>(layer, inputs, from, to, outputs);
 }
 
 void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state) {
-    for (uint8_t c = from; c < to; ++c) {
-        state[c] = clamp(state[c] + accumulate(layer, c, inputs), -kStateMax, kStateMax);
-    }
+    add_outputs<OneCell>(layer, inputs, from, to, state);
 }
 
 void Forward::begin(const int8_t* inputs, int16_t* state) {

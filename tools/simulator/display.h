@@ -1,0 +1,40 @@
+// What the tiles of a group of runs show, and how many of each run are right.
+#pragma once
+
+#include <stdint.h>
+
+#include <vector>
+
+#include "schedule.h"
+#include "setup.h"
+
+namespace tilenca {
+
+constexpr int8_t kDark = -1;
+
+class Display {
+  public:
+    // Of the runs [first, last) of the setup; `shown` [cells of the group] is written in place. Those the
+    // schedule counts are asked.
+    Display(const TilencaSetup& setup, int first, int last, const Schedule& schedule, int8_t* shown);
+
+    void show(int cell, int8_t what) {
+        if (asked_[cell]) {
+            right_[run_[cell]] += (what == target_[cell]) - (shown_[cell] == target_[cell]);
+        }
+        shown_[cell] = what;
+    }
+
+    // For every run the share of tiles that are right, of those asked.
+    void shares(float* shares) const;
+
+  private:
+    const int8_t* target_;
+    int8_t* shown_;
+    std::vector<uint8_t> asked_;
+    std::vector<int32_t> run_;   // [cell]
+    std::vector<int32_t> right_; // [run]
+    std::vector<int32_t> total_; // [run]
+};
+
+} // namespace tilenca

@@ -1,0 +1,55 @@
+#include "sampler.h"
+
+#include <algorithm>
+
+namespace tilenca {
+
+Sampler::Sampler(const TilencaSetup& setup, int first, int last)
+    : Schedule(setup, first, last, 2, 0), sent_(on_.size()) {
+    for (int cell = 0; cell < cells(); ++cell) {
+        sending_.push_back(cell); // everybody says what it starts from
+    }
+}
+
+void Sampler::plan(Round& round) {
+    deliver(round);
+    sending_.clear();
+    for (size_t run = 0; run < random_.size(); ++run) {
+        Random& random = random_[run];
+        for (int from = starts_[run]; from < starts_[run + 1]; from += 64) {
+            const int to = std::min(from + 64, starts_[run + 1]);
+            uint64_t fires = random.next();
+            for (int cell = from; cell < to; ++cell, fires >>= 1) {
+                if (!(fires & 1) || !on_[cell]) {
+                    continue;
+                }
+                sending_.push_back(cell);
+                if (!stuck_[cell]) {
+                    round.updates.push_back({cell, links_.absent(cell, random, now_)});
+                }
+            }
+        }
+    }
+}
+
+void Sampler::deliver(Round& round) {
+    if (links_.tracks_silence()) {
+        // Who skips its turn is not silent: its last message still is its state.
+        std::fill(sent_.begin(), sent_.end(), 0);
+        for (int32_t cell : sending_) {
+            sent_[cell] = 1;
+        }
+        for (int cell = 0; cell < cells(); ++cell) {
+            if (on_[cell] && !sent_[cell]) {
+                links_.renew(cell, now_);
+            }
+        }
+    }
+    for (int32_t cell : sending_) {
+        if (on_[cell]) {
+            round.arrivals.push_back({cell, links_.send(cell, random_of(cell), now_)});
+        }
+    }
+}
+
+} // namespace tilenca

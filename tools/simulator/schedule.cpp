@@ -1,0 +1,77 @@
+#include "schedule.h"
+
+#include "clocks.h"
+#include "core/link.h"
+#include "sampler.h"
+
+namespace tilenca {
+
+Schedule::Schedule(const TilencaSetup& setup, int first, int last, int rounds, int start)
+    : now_(start), links_(setup, first, last, kSilentPeriods * rounds), setup_(setup), first_(first),
+      last_(last), rounds_(rounds) {
+    const int32_t begin = setup.starts[first], end = setup.starts[last];
+    on_.assign(setup.alive + begin, setup.alive + end);
+    counts_ = on_;
+    stuck_.assign(on_.size(), 0);
+    for (int run = first; run < last; ++run) {
+        random_.emplace_back(setup.seeds[run]);
+        starts_.push_back(setup.starts[run] - begin);
+        run_.insert(run_.end(), setup.starts[run + 1] - setup.starts[run], run - first);
+        if (setup.fault == kNoFault || setup.faulty[run] < 0) {
+            continue;
+        }
+        const int cell = setup.faulty[run] - begin;
+        counts_[cell] = 0;
+        if (setup.begin == 0) {
+            (setup.fault == kStuck ? stuck_ : on_)[cell] = setup.fault == kStuck;
+        }
+    }
+    starts_.push_back(end - begin);
+}
+
+bool Schedule::next(Round& round) {
+    round.gone.clear();
+    round.born.clear();
+    round.arrivals.clear();
+    round.updates.clear();
+    if (now_ >= 0 && now_ % rounds_ == 0 && setup_.fault != kNoFault) {
+        begin_step(round, now_ / rounds_);
+    }
+    ++now_;
+    plan(round);
+    return now_ > 0 && now_ % rounds_ == 0;
+}
+
+void Schedule::begin_step(Round& round, int64_t step) {
+    const bool back = setup_.fault == kAway && step == setup_.end;
+    if (!back && (step != setup_.begin || step == 0)) {
+        return;
+    }
+    for (int run = first_; run < last_; ++run) {
+        const int cell = setup_.faulty[run] - setup_.starts[first_];
+        if (setup_.faulty[run] < 0 || !setup_.alive[setup_.faulty[run]]) {
+            continue;
+        }
+        if (back) {
+            on_[cell] = 1;
+            links_.forget(cell);
+            switch_on(cell);
+            round.born.push_back(cell);
+        } else if (setup_.fault == kStuck) {
+            stuck_[cell] = 1;
+        } else {
+            on_[cell] = 0;
+            switch_off(cell);
+            round.gone.push_back(cell);
+        }
+    }
+}
+
+std::unique_ptr<Schedule> make_schedule(const TilencaSetup& setup, int first, int last) {
+    if (setup.clocks) {
+        return std::make_unique<Clocks>(setup, first, last);
+    }
+    return std::make_unique<Sampler>(setup, first, last);
+}
+
+} // namespace tilenca

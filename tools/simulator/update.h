@@ -1,0 +1,25 @@
+// Updates of many cells by the firmware's arithmetic, as many at once as the processor's vectors are wide.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "packed.h"
+
+namespace tilenca {
+
+// One update. Both pointers stay the caller's.
+struct CellUpdate {
+    const int8_t* inputs; // 5 C messages: own, then those of N, E, S, W
+    int16_t* state;       // C stored values, changed in place
+    uint8_t absent;       // bit s: the message of side s reads as zeros
+};
+
+// Every state to the bit as the chip's. The cells must differ; inputs are read before any state is written
+// of the same few cells only.
+void update_cells(const PackedNetwork& network, const CellUpdate* updates, size_t count);
+
+// How many cells go side by side on this machine.
+int lanes_of_this_machine();
+
+} // namespace tilenca
