@@ -16,6 +16,8 @@ from tilenca import paths
 from tilenca.errors import BuildError
 from tilenca.modelfile import TAPS, Model
 
+WIDEST = 0  # kWidest of tools/simulator/update.h
+
 LIBRARY = paths.BUILD / "simulator" / "libtilenca_core.so"
 
 
@@ -50,7 +52,7 @@ def _library(path: Path) -> ctypes.CDLL:
     try:
         library = ctypes.CDLL(str(path))
         for name, arguments, result in (
-            ("update_cells", [ctypes.POINTER(CModel), pointer, pointer, ctypes.c_size_t], None),
+            ("update_cells", [ctypes.POINTER(CModel), pointer, pointer, ctypes.c_size_t, count], count),
             ("tissue_new", [ctypes.POINTER(CModel), pointer, pointer, pointer], pointer),
             ("tissue_delete", [pointer], None),
             ("tissue_run", [pointer, count, count, pointer, pointer], None),
@@ -75,20 +77,24 @@ def library() -> ctypes.CDLL:
     return _library(LIBRARY)
 
 
-def update_cells(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8]) -> NDArray[np.int16]:
+def update_cells(
+    model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8], lanes: int = WIDEST
+) -> NDArray[np.int16]:
     """One update of every cell by the firmware's core (docs/PROTOCOL.md section 4).
 
     Args:
         model: its integer weights are used.
         states: (..., C) int16 stored states, unit 2^-13; not changed.
         inputs: (..., 5 C) int8 messages: own, N, E, S, W; zeros for an absent neighbour.
+        lanes: how many cells to compute side by side, the same to the bit: `WIDEST`, or 4, 8, 16, or one, by
+            the very code of the chip.
 
     Returns:
         (..., C) int16, the new states.
 
     Raises:
         BuildError: the library is not built; the message says how.
-        ValueError: shapes or types do not fit the model.
+        ValueError: shapes or types do not fit the model, or this machine cannot do so many lanes.
     """
     channels = model.dimensions.channels
     if states.dtype != np.int16 or states.shape[-1:] != (channels,):
@@ -98,7 +104,10 @@ def update_cells(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int
         raise ValueError(f"inputs are {inputs.dtype} {inputs.shape}, the states need int8 {wanted}")
     new_states = np.array(states, dtype=np.int16, order="C")
     flat_inputs = np.ascontiguousarray(inputs)
-    library().tilenca_update_cells(
-        CModel.of(model), address(new_states), address(flat_inputs), new_states.size // channels
+    count = new_states.size // channels
+    done = library().tilenca_update_cells(
+        CModel.of(model), address(new_states), address(flat_inputs), count, lanes
     )
+    if not done:
+        raise ValueError(f"this machine cannot compute {lanes} cells side by side; use WIDEST")
     return new_states

@@ -58,7 +58,8 @@ class Conditions:
             raise ValueError(f"no such schedule or loss: {self.schedule!r}, {self.lost!r}")
         if not (0 <= self.loss <= 1 and 0 <= self.dead <= 1):
             raise ValueError(f"loss {self.loss} and dead {self.dead} must be shares, 0..1")
-        if self.drift < 0 or self.boot < 0 or not 0 < self.latency[0] <= self.latency[1] < 1 - self.drift:
+        in_time = 0 < self.latency[0] <= self.latency[1] < 1 - self.drift
+        if not (in_time and self.drift >= 0 and 0 <= self.boot < float("inf")):
             raise ValueError(
                 f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "
                 "message arrives before its sender sends the next"
@@ -139,9 +140,10 @@ class Simulator:
         states: (N, C) states of now; not to be written to.
         shown: (N,) int8, the class each tile shows now, -1 for dark.
         alive: (N,) whether a tile is not one of `conditions.dead`.
+        setup: all that chance decided beforehand.
 
     Raises:
-        ValueError: `fault` does not fit the runs, or leaves nobody to ask.
+        ValueError: `states` or `fault` do not fit the runs, or nobody is left to ask.
     """
 
     def __init__(
@@ -160,6 +162,8 @@ class Simulator:
         self.batch = batch = drawings.batch(chosen)
         self.cells = cells = len(batch.sample)
         self.states = engine.seed(cells) if states is None else np.array(states, order="C")
+        if self.states.shape != (cells, engine.channels):
+            raise ValueError(f"states are {self.states.shape}, the runs need {(cells, engine.channels)}")
         self.shown = np.full(cells, DARK, np.int8)
         self.alive = _draw_alive(batch, conditions.dead, random)
         faulty = _faulty(batch, fault)
@@ -181,6 +185,7 @@ class Simulator:
         asked[faulty[faulty != NOBODY]] = False
         if not np.logical_or.reduceat(asked, batch.starts).all():
             raise ValueError("fault: a run has no other living tile, and nobody is left to ask")
+        self.setup = setup
         self._life: Tissue | RoundByRound
         if isinstance(engine, FastEngine):
             self._life = Tissue(engine.model, setup, self.states, self.shown)

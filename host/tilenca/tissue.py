@@ -121,11 +121,17 @@ class Tissue:
         setup: the runs.
         states: (N, C) int16, contiguous; changed in place.
         shown: (N,) int8, the class each tile shows, `DARK` for none; changed in place.
+
+    Raises:
+        BuildError: the library is not built.
+        ValueError: the states are of another type.
     """
 
     def __init__(
         self, model: Model, setup: Setup, states: NDArray[np.int16], shown: NDArray[np.int8]
     ) -> None:
+        if states.dtype != np.int16 or not states.flags.c_contiguous:
+            raise ValueError(f"states are {states.dtype}, wanted: contiguous int16")
         self._runs, self._cells = len(setup.seeds), len(setup.alive)
         self._kept = _as_c(setup), states, shown
         self._library, self._tissue = library(), None

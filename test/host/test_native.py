@@ -82,6 +82,67 @@ def test_nothing_wraps_at_the_extremes(weight: int, bias: int, message: int, sta
     )
 
 
+WIDTHS = [16, 8, 4]
+
+
+def update_by(
+    lanes: int, model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8]
+) -> NDArray[np.int16]:
+    """As many cells side by side; skips where the processor cannot."""
+    try:
+        return native.update_cells(model, states, inputs, lanes)
+    except ValueError as error:
+        pytest.skip(str(error))
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("lanes", WIDTHS)
+def test_cells_side_by_side_are_to_the_bit_what_the_chips_code_makes_of_each(
+    size: Dimensions, lanes: int
+) -> None:
+    rng = np.random.default_rng(size.channels)
+    for reach in (1, 12, 60, 127):
+        model = random_model(size, reach, seed=reach)
+        for count in (1, lanes - 1, lanes, 5 * lanes + 3):
+            # Random values, among them the ends of their range in whole cells and here and there.
+            states = rng.integers(-16256, 16257, (count, size.channels)).astype(np.int16)
+            inputs = rng.integers(-127, 128, (count, 5 * size.channels)).astype(np.int8)
+            states[rng.random(states.shape) < 0.2] = 16256
+            states[rng.random(states.shape) < 0.2] = -16256
+            inputs[rng.random(inputs.shape) < 0.2] = 127
+            inputs[rng.random(inputs.shape) < 0.2] = -127
+            inputs[0] = rng.choice([-127, 0, 127])
+            one_by_one = native.update_cells(model, states, inputs, 1)
+            np.testing.assert_array_equal(one_by_one, reference(model, states, inputs))
+            np.testing.assert_array_equal(update_by(lanes, model, states, inputs), one_by_one)
+
+
+@pytest.mark.parametrize("lanes", WIDTHS)
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_the_greatest_sums_there_can_be_are_exact_in_float32(lanes: int, sign: int) -> None:
+    """All products have the same sign, and are odd in the end: 2^23 is near, and every unit counts."""
+    size = Dimensions(51, 127, 127)
+    model = random_model(size, 127, seed=3)
+    integer = {
+        name: np.full_like(array, 127 if name[0] == "w" else 32767) for name, array in model.integer.items()
+    }
+    rng = np.random.default_rng(4)
+    integer["w3"] = (sign * integer["w3"]).astype(np.int8)
+    integer["w1"][:, -1] = rng.integers(-127, 128, 127)  # the sums differ in their last bits
+    model = Model(("0",), size, integer, {})
+    states = rng.integers(-16256, 16257, (40, 51)).astype(np.int16)
+    inputs = np.full((40, 255), 127, np.int8)
+    inputs[:, -1] = rng.integers(-127, 128, 40)
+    np.testing.assert_array_equal(update_by(lanes, model, states, inputs), reference(model, states, inputs))
+
+
+@pytest.mark.parametrize("lanes", [-1, 2, 5, 32])
+def test_a_number_of_lanes_that_no_machine_has_is_refused(lanes: int) -> None:
+    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    with pytest.raises(ValueError, match=f"cannot compute {lanes} cells side by side"):
+        native.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8), lanes)
+
+
 def test_any_number_of_leading_axes_and_no_change_of_the_arguments() -> None:
     model = random_model(Dimensions(4, 6, 6), 30, seed=1)
     rng = np.random.default_rng(2)

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "copy.h"
 #include "core/network.h"
 #include "core/side.h"
 
@@ -46,7 +47,7 @@ void Cells::deliver(const Event& arrival, const Links& links) {
         if (arrival.sides >> side & 1) {
             const uint8_t theirs = index_of(opposite(side_at(static_cast<uint8_t>(side))));
             int8_t* heard = inputs(links.neighbour(arrival.cell, side)) + (1 + theirs) * network_.channels;
-            memcpy(heard, inputs(arrival.cell), network_.channels);
+            copy(heard, inputs(arrival.cell), network_.channels);
         }
     }
 }

@@ -2,6 +2,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <memory>
+#include <new>
 #include <vector>
 
 #include "core/network.h"
@@ -51,6 +53,33 @@ tilenca::PackedNetwork packed(const TilencaModel& m) {
             {m.hidden2, m.channels, m.w3, m.b3}};
 }
 
+void update_as_the_chip_does(const TilencaModel& m, int16_t* states, const int8_t* inputs, size_t count) {
+    using tilenca::FlashView;
+    const uint8_t wide = tilenca::kTaps * m.channels;
+    const tilenca::Network network = {
+        {wide, m.hidden1, FlashView<int8_t>(m.w1), FlashView<int16_t>(m.b1)},
+        {m.hidden1, m.hidden2, FlashView<int8_t>(m.w2), FlashView<int16_t>(m.b2)},
+        {m.hidden2, m.channels, FlashView<int8_t>(m.w3), FlashView<int16_t>(m.b3)},
+    };
+    tilenca::Forward forward(network);
+    for (size_t i = 0; i < count; ++i) {
+        forward.begin(inputs + i * wide, states + i * m.channels);
+        while (!forward.done()) {
+            forward.step();
+        }
+    }
+}
+
+// What `make` makes; null where memory does not suffice.
+template <class Make>
+auto made(Make make) -> decltype(make()) {
+    try {
+        return make();
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
+
 // A schedule for those who have states of their own kind.
 struct Plan {
     explicit Plan(const TilencaSetup& given)
@@ -66,20 +95,26 @@ struct Plan {
 extern "C" {
 
 // Updates `count` cells in place: states[count][C], inputs[count][5 C] (own message, then N, E, S, W).
-TILENCA_API void tilenca_update_cells(const TilencaModel* model, int16_t* states, const int8_t* inputs,
-                                      size_t count) {
+// `lanes` go side by side: as many as this machine can (0), so many, or one, by the very code of the chip.
+// 0 if this machine cannot.
+TILENCA_API int32_t tilenca_update_cells(const TilencaModel* model, int16_t* states, const int8_t* inputs,
+                                         size_t count, int32_t lanes) {
+    if (lanes == 1) {
+        update_as_the_chip_does(*model, states, inputs, count);
+        return 1;
+    }
     const size_t wide = tilenca::kTaps * model->channels;
     std::vector<tilenca::CellUpdate> updates(count);
     for (size_t i = 0; i < count; ++i) {
         updates[i] = {inputs + i * wide, states + i * model->channels, 0};
     }
-    tilenca::update_cells(packed(*model), updates.data(), count);
+    return tilenca::update_cells(packed(*model), updates.data(), count, lanes);
 }
 
 // See tilenca::Tissue; the model's weights are copied.
 TILENCA_API tilenca::Tissue* tilenca_tissue_new(const TilencaModel* model, const TilencaSetup* setup,
                                                 int16_t* states, int8_t* shown) {
-    return new tilenca::Tissue(packed(*model), model->classes, *setup, states, shown);
+    return made([&] { return new tilenca::Tissue(packed(*model), model->classes, *setup, states, shown); });
 }
 
 TILENCA_API void tilenca_tissue_delete(tilenca::Tissue* tissue) {
@@ -96,7 +131,7 @@ TILENCA_API uint64_t tilenca_tissue_updates(const tilenca::Tissue* tissue) {
 }
 
 TILENCA_API void* tilenca_plan_new(const TilencaSetup* setup) {
-    return new Plan(*setup);
+    return made([&] { return new Plan(*setup); });
 }
 
 TILENCA_API void tilenca_plan_delete(void* plan) {

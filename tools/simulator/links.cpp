@@ -66,12 +66,4 @@ Sides Links::absent(int cell, Random& random, int now) const {
     return sides;
 }
 
-void Links::forget(int cell) {
-    for (int side = 0; side < kSides; ++side) {
-        if (neighbour(cell, side) >= 0) {
-            arrived_[neighbour(cell, side) * kSides + opposite_of(side)] = kNever;
-        }
-    }
-}
-
 } // namespace tilenca

@@ -30,10 +30,7 @@ class Links {
     // The sides whose message the cell reads as zeros.
     Sides absent(int cell, Random& random, int now) const;
 
-    // The cell has heard nobody yet.
-    void forget(int cell);
-
-    // Whether renew() and forget() do anything.
+    // Whether renew() does anything.
     bool tracks_silence() const { return tracks_silence_; }
 
   private:

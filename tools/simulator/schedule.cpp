@@ -54,7 +54,6 @@ void Schedule::begin_step(Round& round, int64_t step) {
         }
         if (back) {
             on_[cell] = 1;
-            links_.forget(cell);
             switch_on(cell);
             round.born.push_back(cell);
         } else if (setup_.fault == kStuck) {

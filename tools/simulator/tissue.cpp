@@ -11,7 +11,7 @@ namespace tilenca {
 namespace {
 
 // On clocks a twentieth of a group updates at a time: some vectors full.
-constexpr int kGroupCells = 2048;
+constexpr int kGroupCells = 4096;
 
 } // namespace
 

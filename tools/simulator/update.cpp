@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "copy.h"
 #include "core/arithmetic.h"
 #include "core/side.h"
 
@@ -64,13 +65,13 @@ class Block {
     void update(const CellUpdate* updates, int count) {
         const int channels = network_.channels;
         for (int lane = 0; lane < count; ++lane) {
-            memcpy(messages_[lane], updates[lane].inputs, kTaps * channels);
+            copy(messages_[lane], updates[lane].inputs, kTaps * channels);
             for (int side = 0; updates[lane].absent >> side; ++side) {
                 if (updates[lane].absent >> side & 1) {
                     memset(messages_[lane] + (1 + side) * channels, 0, channels);
                 }
             }
-            memcpy(states_[lane], updates[lane].state, channels * sizeof(int16_t));
+            copy(states_[lane], updates[lane].state, channels * 2);
         }
         read_columns();
         hidden_outputs<L>(network_.hidden1, inputs_, 0, network_.hidden1.outputs, hidden1_);
@@ -78,7 +79,7 @@ class Block {
         add_outputs<L>(network_.output, rows_of(hidden2_), 0, network_.output.outputs, state_);
         write_columns();
         for (int lane = 0; lane < count; ++lane) {
-            memcpy(updates[lane].state, states_[lane], channels * sizeof(int16_t));
+            copy(updates[lane].state, states_[lane], channels * 2);
         }
     }
 
@@ -176,34 +177,33 @@ __attribute__((flatten)) void update_by_4(const PackedNetwork& network, const Ce
     update_all<4>(network, updates, count);
 }
 
-struct Choice {
+struct Width {
     int lanes;
     Update update;
+    bool here; // whether this processor can
 };
 
-Choice choose() {
+// The widest first.
+const Width kWidths[] = {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512dq")) {
-        return {16, update_by_16};
-    }
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        return {8, update_by_8};
-    }
+    {16, update_by_16,
+     __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512dq")},
+    {8, update_by_8, __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")},
 #endif
-    return {4, update_by_4};
-}
-
-const Choice kChoice = choose();
+    {4, update_by_4, true},
+};
 
 } // namespace
 
-void update_cells(const PackedNetwork& network, const CellUpdate* updates, size_t count) {
-    kChoice.update(network, updates, count);
-}
-
-int lanes_of_this_machine() {
-    return kChoice.lanes;
+bool update_cells(const PackedNetwork& network, const CellUpdate* updates, size_t count, int lanes) {
+    for (const Width& width : kWidths) {
+        if (width.here && (lanes == kWidest || lanes == width.lanes)) {
+            width.update(network, updates, count);
+            return true;
+        }
+    }
+    return false;
 }
 
 } // namespace tilenca

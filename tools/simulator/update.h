@@ -15,11 +15,10 @@ struct CellUpdate {
     uint8_t absent;       // bit s: the message of side s reads as zeros
 };
 
-// Every state to the bit as the chip's. The cells must differ; inputs are read before any state is written
-// of the same few cells only.
-void update_cells(const PackedNetwork& network, const CellUpdate* updates, size_t count);
+constexpr int kWidest = 0;
 
-// How many cells go side by side on this machine.
-int lanes_of_this_machine();
+// Every state to the bit as the chip's, whatever the number of cells side by side; false if this machine
+// cannot do so many. No two updates are of the same cell.
+bool update_cells(const PackedNetwork& network, const CellUpdate* updates, size_t count, int lanes = kWidest);
 
 } // namespace tilenca
