@@ -70,7 +70,7 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits*.toml --out build/models/digits
 
-bench: setup-demo ## print exact sizes of the firmware and the speed of the emulation
+bench: setup-demo ## print exact sizes of the firmware and the speed of emulation and simulation
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
 

@@ -1,17 +1,24 @@
-"""Prints what the firmware costs and how fast it is emulated: python tools/bench.py FIRMWARE.elf."""
+"""Prints what the firmware costs, how fast it is emulated and simulated: tools/bench.py FIRMWARE.elf."""
 
 import argparse
 import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
 import budgets
-from tilenca import paths
-from tilenca.emulation import Conditions, Emulation, firmware_settings
+from tilenca import native, paths
+from tilenca.drawings import load_drawings
+from tilenca.emulation import Conditions as Powering
+from tilenca.emulation import Emulation, firmware_settings
+from tilenca.modelfile import load_model
 from tilenca.shapes import load_task
+from tilenca.simulate import Conditions, FastEngine, Simulator
 
 SHAPE = "8"  # of the paper's digits the one with the most tiles
 SEED = 0
+RUNS, STEPS, TURNS = 20, 60, 5  # of the simulator
 
 
 def emulation(elf: Path, seconds: float) -> list[str]:
@@ -24,7 +31,7 @@ def emulation(elf: Path, seconds: float) -> list[str]:
     """
     task = load_task(paths.DEFAULT_SHAPES)
     running = Emulation(
-        task, task.find(SHAPE), elf, Conditions(seconds=seconds, seed=SEED), firmware_settings(elf)
+        task, task.find(SHAPE), elf, Powering(seconds=seconds, seed=SEED), firmware_settings(elf)
     )
     with running.array:
         started_s = time.perf_counter()
@@ -45,16 +52,45 @@ def emulation(elf: Path, seconds: float) -> list[str]:
     ]
 
 
+def simulator() -> list[str]:
+    """Simulates all shipped digits on one core, in turn with the chip's own code on one cell after the other.
+
+    Processor time, so that whoever else is busy here counts little.
+    """
+    model = load_model(paths.DEFAULT_MODEL)
+    drawings = load_drawings(sorted(paths.SHAPES.glob("digits*.toml")), labels=model.labels)
+    chosen = np.repeat(np.arange(len(drawings)), RUNS)
+    whole, alone = [], []
+    for turn in range(TURNS):
+        random = np.random.default_rng(turn)
+        life = Simulator(
+            FastEngine(model), drawings, chosen, Conditions("clock", loss=0.1), random, threads=1
+        )
+        started_s = time.process_time()
+        life.run(STEPS)
+        whole.append(life.updates / (time.process_time() - started_s))
+        inputs = np.tile(FastEngine(model).message(life.states), 5)
+        started_s = time.process_time()
+        native.update_cells(model, life.states, inputs, lanes=1)
+        alone.append(life.cells / (time.process_time() - started_s))
+    speed, ratio = np.median(whole), np.median(np.divide(whole, alone))
+    return [
+        f"{'simulation, one core':<22} {speed / 1e6:.1f} million cell updates/s with clocks, links and loss, "
+        f"{ratio:.1f} times the chip's code alone"
+    ]
+
+
 def main() -> int:
     """Prints the sizes, then the speed; returns the exit status of the budgets."""
     parser = argparse.ArgumentParser(
-        description="Prints what the firmware costs and how fast it is emulated."
+        description="Prints what the firmware costs and how fast it is emulated and simulated."
     )
     parser.add_argument("elf", type=Path, help="the image, as .pio/build/megaatmega2560/firmware.elf")
     parser.add_argument("--seconds", type=float, default=20.0, help="emulated time (default: %(default)s)")
     args = parser.parse_args()
     status = budgets.report(args.elf)
     print("\n".join(emulation(args.elf, args.seconds)), flush=True)
+    print("\n".join(simulator()), flush=True)
     return status
 
 

@@ -19,6 +19,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("tilenca.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.evaluate", "measure how well a model does on shapes"),
     "plot": ("tilenca.plot", "draw how training went, or a film of what tiles show"),
+    "simulate": ("tilenca.simulate_command", "run drawings on the firmware's core, many runs at once"),
     "export": ("tilenca.export", "render a model into the firmware's C++ files"),
     "emulate": ("tilenca.emulate", "run the firmware image on one emulated board per tile"),
     "devices": ("tilenca.devices", "list the tiles found on USB"),

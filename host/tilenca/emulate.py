@@ -19,9 +19,10 @@ from rich.live import Live
 from tilenca import paths
 from tilenca.arguments import count, number, whole
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
-from tilenca.emulate_view import Picture, beside, mismatch, take_picture, verdict
+from tilenca.emulate_view import mismatch, take_picture, verdict
 from tilenca.emulation import Conditions, Emulation, firmware_settings
 from tilenca.errors import UsageError, image_error
+from tilenca.picture import Picture, beside
 from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.recording import Recorder, as_record
 from tilenca.shapes import Shape, Task, load_task

@@ -158,7 +158,7 @@ class Simulator:
         fault: Fault | None = None,
         threads: int | None = None,
     ) -> None:
-        self.threads = _processors() if threads is None else threads
+        self.threads = processors() if threads is None else threads
         self.batch = batch = drawings.batch(chosen)
         self.cells = cells = len(batch.sample)
         self.states = engine.seed(cells) if states is None else np.array(states, order="C")
@@ -213,7 +213,7 @@ class Simulator:
         return self._life.updates
 
 
-def _processors() -> int:
+def processors() -> int:
     """How many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -10,8 +10,11 @@ namespace tilenca {
 
 namespace {
 
-// On clocks a twentieth of a group updates at a time: some vectors full.
-constexpr int kGroupCells = 4096;
+// How many cells a group has. On clocks a twentieth of them updates at a time, which should fill some
+// vectors; and several threads want several groups.
+int group_cells(int cells) {
+    return std::max(1024, std::min(cells / 8, 4096));
+}
 
 } // namespace
 
@@ -43,7 +46,7 @@ Tissue::Tissue(const PackedNetwork& network, uint8_t classes, const TilencaSetup
         const int32_t begin = setup.starts[first];
         do {
             ++last;
-        } while (last < setup.runs && setup.starts[last + 1] - begin <= kGroupCells);
+        } while (last < setup.runs && setup.starts[last + 1] - begin <= group_cells(setup.cells));
         groups_.push_back(std::make_unique<Group>(
             *this, first, last, states + static_cast<size_t>(begin) * network.channels, shown + begin));
     }

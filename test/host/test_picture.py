@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from tilenca import paths
-from tilenca.emulate_view import Picture, beside, digit
 from tilenca.glyphs import GLYPHS, glyph
+from tilenca.picture import Picture, beside, digit
 from tilenca.shapes import Shape, load_task
 
 SHAPE = Shape("L", ("#.", "##"), "L")
