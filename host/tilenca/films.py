@@ -66,14 +66,9 @@ def record(model: Model, drawings: Drawings, number: int, steps: int, schedule: 
         np.random.default_rng(seed),
     )
 
-    def shown() -> NDArray[np.int64]:
-        scores = tissue.states[:, -len(model.labels) :]
-        return np.where(tissue.updated, scores.argmax(axis=1), NOTHING)
-
-    pictures = [shown()]
-    for _ in range(steps):
-        tissue.run(1)
-        pictures.append(shown())
+    pictures = [np.full((1, tissue.cells), NOTHING, np.int8)]
+    if (shown := tissue.run(steps, record=True).shown) is not None:
+        pictures.append(shown)
     updates = "every tile on its own clock" if schedule == "clock" else "random updates, as in the paper"
     about = f"model {model.model_id:04X}, {updates}, seed {seed}; a step is one update per tile"
-    return Film(drawings.shapes[number], model.labels, np.stack(pictures), about)
+    return Film(drawings.shapes[number], model.labels, np.concatenate(pictures).astype(np.int64), about)

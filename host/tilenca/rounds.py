@@ -25,7 +25,8 @@ class RoundByRound:
         # What each cell holds of its N, E, S, W neighbour; the last row is nobody's.
         self.heard = np.zeros((len(states) + 1, len(SIDES), engine.channels), self.own.dtype)
         self.asked = setup.alive.copy()
-        self.asked[setup.faulty[setup.faulty >= 0]] = False
+        if setup.fault != "away":
+            self.asked[setup.faulty[setup.faulty >= 0]] = False
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
         """As `Tissue.run`, by one thread whatever `threads` is."""

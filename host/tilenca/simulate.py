@@ -68,11 +68,12 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Fault:
-    """What happens to one tile of each run, which then is not asked any more what it shows.
+    """What happens to one tile of each run. One that is dead or stuck is not asked what it shows.
 
     Attributes:
         kind: "dead": silent and dark from step `begin` on; "stuck": does not update from then on, but goes on
-            sending the state it had; "away": switched off then, and on again at `end`, in the seed state.
+            sending the state it had; "away": switched off and dark then, and on again at `end`, in the seed
+            state.
         tiles: (R,) which tile of its drawing, -1 for none of that run.
         begin: number of steps that come before; 0: from before the first tile is switched on.
         end: number of steps that come before a tile that was away is back.
@@ -182,7 +183,8 @@ class Simulator:
             end=(fault.end or 0) if fault else 0,
         )
         asked = self.alive.copy()
-        asked[faulty[faulty != NOBODY]] = False
+        if fault is not None and fault.kind != "away":
+            asked[faulty[faulty != NOBODY]] = False
         if not np.logical_or.reduceat(asked, batch.starts).all():
             raise ValueError("fault: a run has no other living tile, and nobody is left to ask")
         self.setup = setup

@@ -72,7 +72,8 @@ class SlowRun:
         self.now = Fraction(0)
         self.faulty = int(setup.faulty[run] - begin) if setup.faulty[run] >= 0 else None
         self.target = int(setup.target[begin])
-        self.counted = [tile for tile in self.tiles if self.on[tile] and tile != self.faulty]
+        out = None if setup.fault == "away" else self.faulty  # who was away must be right when back
+        self.counted = [tile for tile in self.tiles if self.on[tile] and tile != out]
         if self.faulty is not None and setup.begin == 0:
             if setup.fault == "stuck":
                 self.stuck[self.faulty] = True

@@ -274,6 +274,7 @@ def test_a_tile_that_was_away_is_dark_and_comes_back_as_the_seed(schedule: Any) 
     course = life.run(18, record=True)
     away = faulty_cells(life)
     assert (course.shown[6:, away] == -1).all()  # type: ignore[index]
+    assert (course.right[6:, TILES >= 0] < 1).all(), "a dark tile is not right"
     later = life.run(12, record=True)
     assert (later.shown[-1, away] >= 0).all()  # type: ignore[index]
 

@@ -21,7 +21,7 @@ Schedule::Schedule(const TilencaSetup& setup, int first, int last, int rounds, i
             continue;
         }
         const int cell = setup.faulty[run] - begin;
-        counts_[cell] = 0;
+        counts_[cell] &= setup.fault == kAway; // it comes back, and must be right then
         if (setup.begin == 0) {
             (setup.fault == kStuck ? stuck_ : on_)[cell] = setup.fault == kStuck;
         }

@@ -36,7 +36,7 @@ class Schedule {
     // Plans the next round; true when it is the last one of a step.
     bool next(Round& round);
 
-    // Cells that are never asked what they show: never there, or with a fault.
+    // Cells that are never asked what they show: never there, dead or stuck.
     bool counts(int cell) const { return counts_[cell] != 0; }
 
     const Links& links() const { return links_; }
