@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 from tilenca.errors import UsageError
+from tilenca.sizes import Size, parse_size
 from tilenca.streams import warn
 
 MAX_COUNT = 1_000_000
@@ -54,6 +55,14 @@ def whole(lowest: int, highest: int = MAX_COUNT) -> Callable[[str], int]:
         return value
 
     return parse
+
+
+def size(text: str) -> Size:
+    """The type of rows and columns, like 5x4."""
+    try:
+        return parse_size(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _range(lowest: float, highest: float) -> str:

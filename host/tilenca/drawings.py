@@ -5,8 +5,8 @@ which "no neighbour" is an index one past the last cell, where callers keep a ro
 """
 
 import hashlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tilenca.errors import UsageError
 from tilenca.shapes import SIDES, Shape, load_task
+from tilenca.sizes import Sizes
 
 Indices = NDArray[np.int64]
 
@@ -62,6 +63,12 @@ class Drawings:
         """(S,) number of tiles of each drawing."""
         return np.array([len(shape.cells) for shape in self.shapes], dtype=np.int64)
 
+    @property
+    def largest(self) -> tuple[int, int]:
+        """Most rows and most columns of the first file's drawings."""
+        first = [shape.rows for shape, group in zip(self.shapes, self.groups, strict=True) if group == 0]
+        return max(map(len, first)), max(len(rows[0]) for rows in first)
+
     @cached_property
     def classes(self) -> Indices:
         """(S,) class of each drawing."""
@@ -74,6 +81,14 @@ class Drawings:
         for number, shape in enumerate(self.shapes):
             tables[number, : self.sizes[number]] = shape.neighbours()
         return tables
+
+    def chosen(self, numbers: Iterable[int]) -> "Drawings":
+        """Some of these drawings, in a group of their own."""
+        return self.of([self.shapes[number] for number in numbers])
+
+    def of(self, shapes: Sequence[Shape]) -> "Drawings":
+        """Other drawings of the same classes, in one group."""
+        return replace(self, shapes=tuple(shapes), groups=(0,) * len(shapes))
 
     def batch(self, chosen: Indices) -> Batch:
         """Lays drawings out as one flat list of cells.
@@ -98,11 +113,15 @@ class Drawings:
         Returns:
             (cells of new,) int64, index of the cell of `old` at the same place, -1 for a tile put down anew.
         """
-        shift = []
-        for axis in (0, 1):
-            room = self._extent(old)[axis] - self._extent(new)[axis]
-            shift.append(int(random.integers(min(room, 0), max(room, 0) + 1)))
-        return self._overlap(old, new, shift[0], shift[1])
+        return self._overlap(old, new, *self.place_on(old, new, random))
+
+    def place_on(self, old: int, new: int, random: np.random.Generator) -> tuple[int, int]:
+        """Rows and columns by which `new` is shifted when it is laid on `old` as `overlap` does."""
+        down, right = (
+            int(random.integers(min(room, 0), max(room, 0) + 1))
+            for room in (a - b for a, b in zip(self._extent(old), self._extent(new), strict=True))
+        )
+        return down, right
 
     def _extent(self, number: int) -> tuple[int, int]:
         rows = self.shapes[number].rows
@@ -164,3 +183,27 @@ def load_drawings(
         {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()} for path in paths
     )
     return Drawings(tuple(shapes), tuple(groups), tuple(found) if labels is None else tuple(labels), sources)
+
+
+def load_training_task(
+    paths: Sequence[Path], stretch: float, max_classes: int, labels: Sequence[str] | None = None
+) -> tuple[Drawings, Sizes]:
+    """The drawings to train on, and the task's sizes.
+
+    Args:
+        paths: the files; the first may say that its drawings were drawn at other sizes too.
+        stretch: how far the recipe stretches drawings; one that does not trains on the given files alone.
+        max_classes: how many classes the model's state has room for.
+        labels: a model's classes, see `load_drawings`.
+
+    Returns:
+        The drawings, and the sizes; its `drawn` are the files that are not among the drawings.
+
+    Raises:
+        UsageError: as `load_drawings`.
+    """
+    sizes = load_task(paths[0], max_classes).sizes
+    more = tuple(path for path in sizes.drawn if path.resolve() not in [given.resolve() for given in paths])
+    if stretch > 1:
+        return load_drawings([*paths, *more], max_classes, labels), replace(sizes, drawn=())
+    return load_drawings(paths, max_classes, labels), replace(sizes, drawn=more)

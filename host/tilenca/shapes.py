@@ -2,19 +2,22 @@
 
 A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows, `#` a tile and `.` or a blank
 none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
-labels in order of first appearance.
+labels in order of first appearance. A table `[sizes]` says at what other sizes the task's drawings keep their
+class (`tilenca.sizes`).
 """
 
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tilenca.errors import UsageError
 from tilenca.glyphs import GLYPHS
 from tilenca.paths import DEFAULT_SHAPES
 from tilenca.protocol import SIDE_LETTERS
+from tilenca.sizes import Size, Sizes, read_sizes, size_name
+from tilenca.stretch import stretch
 
 TILE = "#"
 EMPTY = ".", " "
@@ -51,6 +54,11 @@ class Shape:
         """(row, column) of every tile in reading order."""
         return cells_of(self.rows)
 
+    def stretched(self, size: Size, up: bool = True) -> "Shape | None":
+        """The drawing at another size (see `tilenca.stretch`), None where it cannot be drawn that small."""
+        rows = stretch(self.rows, *size, up)
+        return None if rows is None else Shape(self.label, rows, f"{self.name} {size_name(size)}")
+
     def neighbours(self) -> list[list[int]]:
         """For every tile the indices into `cells` of its N, E, S, W neighbour, -1 for none."""
         index = {cell: number for number, cell in enumerate(self.cells)}
@@ -64,6 +72,7 @@ class Task:
     path: Path
     shapes: tuple[Shape, ...]
     labels: tuple[str, ...]
+    sizes: Sizes = field(default_factory=Sizes)
 
     def class_of(self, shape: Shape) -> int:
         """Index of the shape's label among the task's classes."""
@@ -126,13 +135,14 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     except tomllib.TOMLDecodeError as error:
         raise UsageError(f"{path}: not valid TOML: {error}") from error
     tables = document.pop("shape", None)
+    sizes = read_sizes(path, document.pop("sizes", {}))
     if document:
         raise UsageError(
-            f"{path}: unknown key '{next(iter(document))}'; a shape file has only [[shape]] tables"
+            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables and [sizes]"
         )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
-    return _task(path, tables, list(_table_lines(text)), max_classes)
+    return replace(_task(path, tables, list(_table_lines(text)), max_classes), sizes=sizes)
 
 
 def _task(

@@ -1,0 +1,92 @@
+"""The same drawing at another size: lines get longer, not thicker.
+
+A drawing is seen as tiles joined to their neighbours. Stretched, every row keeps its tiles and the rows put
+in between hold what joins the one above to the one below; columns likewise. Strokes one tile wide stay one
+tile wide, filled areas stay filled. Shrinking takes away rows and columns that stretching would put back.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+Rows = tuple[str, ...]
+
+
+def stretch(rows: Rows, height: int, width: int, up: bool = True) -> Rows | None:
+    """A drawing at another size.
+
+    Args:
+        rows: the drawing, rectangular, `#` and `.`.
+        height: rows wanted.
+        width: columns wanted.
+        up: where a row or column would come to lie half-way between two places, take the later one.
+
+    Returns:
+        The drawing with `height` rows and `width` columns; None where it cannot be drawn that small.
+    """
+    if width > 1 and all(len(row) == 1 for row in rows):
+        return stretch_rows(rows, height, up)  # a vertical line has no width to stretch
+    if height > 1 and len(rows) == 1:
+        turned = stretch_rows(_turned(rows), width, up)
+        return None if turned is None else _turned(turned)
+    taller = stretch_rows(rows, height, up)
+    wider = None if taller is None else stretch_rows(_turned(taller), width, up)
+    return None if wider is None else _turned(wider)
+
+
+def stretch_rows(rows: Rows, height: int, up: bool = True) -> Rows | None:
+    """A drawing with `height` rows; None where it cannot be drawn that low."""
+    while len(rows) > height:
+        shorter = next(_without_a_row(rows), None)
+        if shorter is None:
+            return None
+        rows = shorter
+    if len(rows) == height:
+        return rows
+    places = [_place(index, len(rows), height, up) for index in range(len(rows))]
+    return place_rows(rows, places)
+
+
+def place_rows(rows: Rows, places: Sequence[int]) -> Rows:
+    """Puts row i at `places[i]`, ascending from 0, and joins them."""
+    placed = list(rows[:1])
+    for above, below, gap in zip(rows, rows[1:], _gaps(places), strict=False):
+        placed += [_joint(above, below)] * (gap - 1)
+        placed.append(below)
+    return tuple(placed)
+
+
+def smallest(rows: Rows) -> Rows:
+    """The smallest drawing that stretches to this one: equal for all sizes of one drawing."""
+    return _turned(_lowest(_turned(_lowest(rows))))
+
+
+def _lowest(rows: Rows) -> Rows:
+    while (shorter := next(_without_a_row(rows), None)) is not None:
+        rows = shorter
+    return rows
+
+
+def _without_a_row(rows: Rows) -> Iterator[Rows]:
+    """The drawing without one row that its neighbours imply, the row nearest to the middle first."""
+    for index in sorted(range(1, len(rows) - 1), key=lambda index: (abs(2 * index + 1 - len(rows)), index)):
+        if rows[index] == _joint(rows[index - 1], rows[index + 1]):
+            yield (*rows[:index], *rows[index + 1 :])
+
+
+def _joint(above: str, below: str) -> str:
+    return "".join("#" if a == b == "#" else "." for a, b in zip(above, below, strict=True))
+
+
+def _gaps(places: Sequence[int]) -> list[int]:
+    return [later - earlier for earlier, later in pairwise(places)]
+
+
+def _place(index: int, count: int, wanted: int, up: bool) -> int:
+    """`index * (wanted - 1) / (count - 1)` rounded, halves up or down."""
+    doubled = 2 * index * (wanted - 1)
+    step = 2 * (count - 1)
+    return (doubled + count - 1) // step if up else -((count - 1 - doubled) // step)
+
+
+def _turned(rows: Rows) -> Rows:
+    return tuple("".join(column) for column in zip(*rows, strict=True))
