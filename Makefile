@@ -52,7 +52,7 @@ format-check: setup-check
 lint: setup-check
 	@.venv/bin/ruff check
 	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
-	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator
+	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator tools/training
 	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV)
 
 types: setup-check
@@ -68,12 +68,12 @@ format: setup-check ## format all Python and C++
 	@.venv/bin/clang-format -i $(CPP)
 
 train: setup-train ## train a model of the digits into build/models/digits
-	@$(TILENCA) train --shapes shapes/digits*.toml --out build/models/digits
+	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
 bench: setup-demo ## print exact sizes of the firmware and the speed of emulation and simulation
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/emulator build/simulator build/strict build/models
+	@rm -rf .pio build/emulator build/simulator build/training build/strict build/models
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -1,13 +1,15 @@
 """Which tile updates when, in training, and what its neighbours have heard of it by then.
 
-Both schedules become the same three arrays, so that one loop trains on a mixture of them:
+Both schedules become the same list of updates, so that one loop trains on a mixture of them:
 
 - the paper's sampler: in every round each tile updates with the sample's fire rate, and is heard at once;
 - the tiles' own clocks: each tile updates once per period at its own phase, its period slightly its own, and
   its neighbours read what it sent last, a little after it was sent.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,68 +17,118 @@ from numpy.typing import NDArray
 from tilenca.drawings import Batch
 from tilenca.recipes import Recipe
 
+Flags = NDArray[np.bool_]
+
 
 @dataclass(frozen=True)
 class Schedule:
-    """What happens in each of T rounds to each of N cells.
+    """E updates in T rounds of N cells.
 
     Attributes:
-        fires: (T, N) bool, the cell updates.
+        counts: (T,) int64, updates of each round.
+        who: (E,) int32, which cell updates, round by round.
+        reads: (E, 5) int32, the rows it perceives of a table of messages: own 0..N-1, as neighbours have
+            heard them N..2N-1, 2N for nobody's, or for a message that is lost.
         arrives: (T, N) bool, at the end of the round the neighbours hear the cell's message of then.
-        neighbours: (T, N, 4) int64, whom the cell reads; N for nobody, or for a message that is lost.
+        starts: (B,) int64, the first cell of each of B samples, which know nothing of each other.
     """
 
-    fires: NDArray[np.bool_]
-    arrives: NDArray[np.bool_]
-    neighbours: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    who: NDArray[np.int32]
+    reads: NDArray[np.int32]
+    arrives: Flags
+    starts: NDArray[np.int64]
+
+    def parts(self, wanted: int) -> "Iterator[tuple[slice, Schedule]]":
+        """The schedules of some samples each, and which cells they are: `wanted` parts of about one size."""
+        rounds, cells = self.arrives.shape
+        when = np.repeat(np.arange(rounds), self.counts)
+        ends = [
+            self.starts[np.searchsorted(self.starts, cells * part // wanted)] for part in range(1, wanted)
+        ]
+        for first, last in pairwise((0, *ends, cells)):
+            mine = (self.who >= first) & (self.who < last)
+            reads = self.reads[mine]
+            heard, nobody = reads >= cells, reads == 2 * cells
+            reads -= np.where(heard, cells + first - (last - first), first).astype(np.int32)
+            reads[nobody] = 2 * (last - first)
+            yield (
+                slice(first, last),
+                Schedule(
+                    np.bincount(when[mine], minlength=rounds),
+                    self.who[mine] - np.int32(first),
+                    reads,
+                    self.arrives[:, first:last],
+                    self.starts[(self.starts >= first) & (self.starts < last)] - first,
+                ),
+            )
+
+    def by_cell(self) -> tuple[Flags, Flags, NDArray[np.int64]]:
+        """(T, N) who fires, (T, N) who arrives, (T, N, 4) int64 whom each cell reads, N for nobody."""
+        rounds, cells = self.arrives.shape
+        when = np.repeat(np.arange(rounds), self.counts)
+        fires = np.zeros((rounds, cells), np.bool_)
+        fires[when, self.who] = True
+        neighbours = np.full((rounds, cells, 4), cells, np.int64)
+        neighbours[when, self.who] = self.reads[:, 1:] - cells
+        return fires, self.arrives, neighbours
 
 
 def draw_schedule(
     recipe: Recipe,
     batch: Batch,
-    rounds: int,
+    lives: NDArray[np.int64],
     random: np.random.Generator,
-    late: NDArray[np.bool_] | None = None,
+    late: Flags,
+    away: Flags,
 ) -> Schedule:
     """Draws one schedule for a batch: each sample on clocks or not, lossy or not, at its own rates.
 
     Args:
         recipe: how.
         batch: B drawings of N cells in all.
-        rounds: T.
+        lives: (B,) rounds that each sample lives; T is the longest.
         random: the only source of chance.
-        late: (B,) whose tiles are switched on at any time within the T rounds; None: nobody's.
+        late: (B,) whose tiles are switched on at any time within their life.
+        away: (N,) tiles that are off all the time.
     """
-    samples, cells = len(batch.starts), len(batch.sample)
+    samples, cells, rounds = len(batch.starts), len(batch.sample), int(lives.max())
+    life = lives[batch.sample]
+    now = np.arange(rounds)[:, None]
     rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
-    fires = random.random((rounds, cells), dtype=np.float32) < rate
+    fires = random.random((rounds, cells), dtype=np.float32) < rate.astype(np.float32)
     arrives = np.ones((rounds, cells), dtype=np.bool_)
     if recipe.clocks > 0:
-        on_clock = (random.random(samples) < recipe.clocks)[batch.sample]
-        ticks, heard = _clocks(recipe, batch, rounds, random)
-        fires = np.where(on_clock, ticks, fires)
-        arrives = np.where(on_clock, heard, arrives)
-    neighbours = np.broadcast_to(batch.neighbours, (rounds, cells, 4))
+        on_clock = np.flatnonzero((random.random(samples) < recipe.clocks)[batch.sample])
+        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, rounds, random)
+    boot = np.where(away, life, random.integers(0, life) * late[batch.sample])
+    when, who = np.nonzero(fires & (now < life) & (now >= boot))
+    neighbours = batch.neighbours[who]
+    if boot.any():
+        asleep = np.append(boot, 0)[neighbours] > when[:, None]
+        neighbours[asleep] = cells
     if recipe.lossy > 0:
         loss = random.uniform(0, recipe.max_loss, samples) * (random.random(samples) < recipe.lossy)
-        lost = random.random((rounds, cells, 4), dtype=np.float32) < loss[batch.sample][:, None]
-        neighbours = np.where(lost, cells, neighbours)
-    if late is not None and late.any():
-        boot = np.append(random.integers(0, rounds, cells) * late[batch.sample], 0)
-        asleep = np.arange(rounds)[:, None] < boot
-        fires = fires & ~asleep[:, :-1]
-        neighbours = np.where(asleep[np.arange(rounds)[:, None, None], neighbours], cells, neighbours)
-    return Schedule(fires, arrives, neighbours)
+        lost = random.random(neighbours.shape, dtype=np.float32) < loss[batch.sample][who, None]
+        neighbours[lost] = cells
+    if recipe.unheard > 0:
+        unheard = random.uniform(0, recipe.max_unheard, samples) * (random.random(samples) < recipe.unheard)
+        some = np.flatnonzero(unheard[batch.sample])
+        arrives[:, some] &= (
+            random.random((rounds, len(some)), dtype=np.float32) >= unheard[batch.sample[some]]
+        )
+    reads = np.concatenate((who[:, None], neighbours + cells), axis=1).astype(np.int32)
+    return Schedule(np.bincount(when, minlength=rounds), who.astype(np.int32), reads, arrives, batch.starts)
 
 
 def _clocks(
-    recipe: Recipe, batch: Batch, rounds: int, random: np.random.Generator
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    samples, cells = len(batch.starts), len(batch.sample)
-    period = random.uniform(*recipe.rounds_per_period, samples)[batch.sample]
-    period = period * (1 + random.uniform(-recipe.drift, recipe.drift, cells))
-    phase = random.random(cells)
-    latency = random.uniform(*recipe.latency, cells)
+    recipe: Recipe, batch: Batch, who: NDArray[np.int64], rounds: int, random: np.random.Generator
+) -> tuple[Flags, Flags]:
+    """(T, cells in `who`) when those cells tick, and when what they then sent is heard."""
+    period = random.uniform(*recipe.rounds_per_period, len(batch.starts))[batch.sample[who]]
+    period = period * (1 + random.uniform(-recipe.drift, recipe.drift, len(who)))
+    phase = random.random(len(who))
+    latency = random.uniform(*recipe.latency, len(who))
     # A tile has ticked in a round when the count of its periods grew in it.
     periods = np.arange(rounds + 1)[:, None] / period + phase
     return np.diff(np.floor(periods), axis=0) > 0, np.diff(np.floor(periods - latency), axis=0) > 0

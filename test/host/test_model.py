@@ -6,14 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from numpy.typing import NDArray
 
 from tilenca import paths
-from tilenca.drawings import Drawings, load_drawings
-from tilenca.errors import UsageError
+from tilenca.drawings import Batch, Drawings, load_drawings
+from tilenca.errors import BuildError, UsageError
+from tilenca.life import library
 from tilenca.model import LARGEST, STEPS, TileNet, initial_arrays, perceive, perceive_by_convolution
 from tilenca.modelfile import Dimensions
 from tilenca.recipes import RECIPES
-from tilenca.rollout import live, live_by_autograd
+from tilenca.rollout import live, live_by_autograd, use_threads
 from tilenca.schedule import draw_schedule
 
 FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "digits-7x6.toml")]
@@ -22,6 +24,10 @@ FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "dig
 @pytest.fixture(scope="module")
 def drawings() -> Drawings:
     return load_drawings(FILES, 20)
+
+
+def nobody(batch: Batch) -> NDArray[np.bool_]:
+    return np.zeros(len(batch.sample), np.bool_)
 
 
 def test_perceiving_real_cells_equals_a_convolution_over_the_whole_grid(drawings: Drawings) -> None:
@@ -60,7 +66,15 @@ def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawing
     # Stored states are whole multiples of 2^-13, saturated.
     states = np.round(random.normal(size=(len(batch.sample), 21)) * 8192).clip(-16256, 16256) / 8192
     start = torch.from_numpy(states.astype(np.float32)) * net.units
-    schedule = draw_schedule(RECIPES["default"], batch, 12, random)
+    lives = random.integers(4, 13, len(drawings))
+    schedule = draw_schedule(
+        RECIPES["full"],
+        batch,
+        lives,
+        random,
+        random.random(len(drawings)) < 0.5,
+        random.random(len(batch.sample)) < 0.1,
+    )
     pull = torch.from_numpy(random.normal(size=start.shape).astype(np.float32))
     ends, gradients = [], []
     for way in (live, live_by_autograd):
@@ -88,23 +102,50 @@ def test_projection_brings_every_weight_into_the_integer_range() -> None:
 
 
 def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latency(drawings: Drawings) -> None:
-    recipe = replace(RECIPES["default"], clocks=1.0, lossy=0.0, rounds_per_period=(4.0, 4.0), drift=0.0)
+    recipe = replace(RECIPES["full"], clocks=1.0, lossy=0.0, rounds_per_period=(4.0, 4.0), drift=0.0)
     recipe = replace(recipe, latency=(0.5, 0.5))
     batch = drawings.batch(np.array([0]))
-    schedule = draw_schedule(recipe, batch, 41, np.random.default_rng(3))
+    schedule = draw_schedule(
+        recipe, batch, np.array([41]), np.random.default_rng(3), np.array([False]), nobody(batch)
+    )
+    fired, arrived, _ = schedule.by_cell()
     for cell in range(len(batch.sample)):
-        fires, arrives = (np.flatnonzero(what[:, cell]) for what in (schedule.fires, schedule.arrives))
+        fires, arrives = (np.flatnonzero(what[:, cell]) for what in (fired, arrived))
         assert set(np.diff(fires)) == {4}
         assert {(a - fires[fires <= a].max()) for a in arrives if a >= fires[0]} == {2}
 
 
 def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
-    recipe = replace(RECIPES["default"], lossy=1.0, max_loss=1.0)
+    recipe = replace(RECIPES["full"], lossy=1.0, max_loss=1.0)
     batch = drawings.batch(np.arange(len(drawings)))
-    schedule = draw_schedule(recipe, batch, 50, np.random.default_rng(3))
-    lost = schedule.neighbours != batch.neighbours
-    assert (schedule.neighbours[lost] == len(batch.sample)).all()
-    assert 0.2 < lost[:, batch.neighbours < len(batch.sample)].mean() < 0.8
+    lives = np.full(len(drawings), 50)
+    schedule = draw_schedule(
+        recipe, batch, lives, np.random.default_rng(3), np.zeros(len(drawings), bool), nobody(batch)
+    )
+    fires, _, neighbours = schedule.by_cell()
+    lost = fires[:, :, None] & (neighbours != batch.neighbours)
+    assert (neighbours[lost] == len(batch.sample)).all()
+    asked = fires[:, :, None] & (batch.neighbours < len(batch.sample))
+    assert 0.2 < lost.sum() / asked.sum() < 0.8
+
+
+def test_nobody_updates_before_being_switched_on_or_after_the_end_of_its_life(drawings: Drawings) -> None:
+    recipe = replace(RECIPES["full"], lossy=0.0, fire_rate=(1.0, 1.0), clocks=0.0)
+    batch = drawings.batch(np.array([0, 0]))
+    schedule = draw_schedule(
+        recipe, batch, np.array([20, 30]), np.random.default_rng(3), np.array([True, False]), nobody(batch)
+    )
+    fires, _, neighbours = schedule.by_cell()
+    late, prompt = fires[:, batch.sample == 0], fires[:, batch.sample == 1]
+    assert not late[20:].any()
+    assert prompt[:30].all()
+    first = np.argmax(late, axis=0)
+    assert len(set(first.tolist())) > 3, "tiles are switched on at different times"
+    for cell, begin in enumerate(first):
+        for side, other in enumerate(batch.neighbours[cell]):
+            if other < len(first) and first[other] > begin:
+                asleep = neighbours[begin : first[other], cell, side]
+                assert (asleep == len(batch.sample)).all(), "a tile that is off was heard"
 
 
 def test_every_drawing_laid_on_another_keeps_tiles_at_their_places(drawings: Drawings) -> None:
@@ -138,3 +179,51 @@ def test_too_many_classes_over_all_files_are_refused(tmp_path: Path) -> None:
     second.write_text('[[shape]]\nlabel = "2"\ngrid = """\n###\n"""\n')
     with pytest.raises(UsageError, match="2 classes in all files, but the model's state has room for 1"):
         load_drawings([first, second], max_classes=1)
+
+
+def test_any_number_of_threads_and_parts_lives_the_same_life(drawings: Drawings) -> None:
+    random = np.random.default_rng(11)
+    batch = drawings.batch(random.integers(len(drawings), size=9))
+    lives = np.full(9, 10)
+    schedule = draw_schedule(RECIPES["full"], batch, lives, random, random.random(9) < 0.3, nobody(batch))
+    whole = schedule.by_cell()
+    for wanted in (1, 2, 5):
+        parts = list(schedule.parts(wanted))
+        assert len(parts) == wanted
+        for part, (cells, some) in enumerate(parts):
+            fires, arrives, neighbours = some.by_cell()
+            size = cells.stop - cells.start
+            assert np.array_equal(fires, whole[0][:, cells]), part
+            assert np.array_equal(arrives, whole[1][:, cells])
+            away = np.where(neighbours == size, len(batch.sample), neighbours + cells.start)
+            assert np.array_equal(away, whole[2][:, cells])
+
+
+def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings) -> None:
+    random = np.random.default_rng(13)
+    net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), random, zero_last=False))
+    batch = drawings.batch(random.integers(len(drawings), size=16))
+    schedule = draw_schedule(
+        RECIPES["full"], batch, np.full(16, 12), random, np.zeros(16, np.bool_), nobody(batch)
+    )
+    start = torch.zeros(len(batch.sample), 21)
+    start[:, 0] = net.units
+    gradients = []
+    try:
+        for threads in (1, 2, 3):
+            use_threads(threads)
+            net.zero_grad()
+            live(net, start, schedule).square().sum().backward()  # type: ignore[no-untyped-call]
+            gradients.append([value.grad.clone() for value in net.parameters() if value.grad is not None])
+    finally:
+        use_threads(1)
+    for other in gradients[1:]:
+        assert all(torch.equal(a, b) for a, b in zip(gradients[0], other, strict=True))
+
+
+def test_a_library_that_is_missing_or_damaged_says_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(BuildError, match="not built yet; run: make setup-train"):
+        library(tmp_path / "nothing.so")
+    (tmp_path / "damaged.so").write_bytes(b"not a library")
+    with pytest.raises(BuildError, match=r"not usable .*; remove it and run: make setup-train"):
+        library(tmp_path / "damaged.so")

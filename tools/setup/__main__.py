@@ -34,7 +34,7 @@ def main() -> int:
     try:
         native.install_system_packages([name for step in reached for name in SYSTEM_PACKAGES.get(step, [])])
         python.make_environment(reached)
-        native.build_libraries()
+        native.build_libraries(reached)
         pio.make_ready()
     except SetupError as error:
         print(f"setup: {error}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""What is compiled or installed outside Python: system packages and the two C++ libraries."""
+"""What is compiled or installed outside Python: system packages and the C++ libraries."""
 
 import os
 import subprocess
@@ -6,9 +6,13 @@ from collections.abc import Sequence
 
 from setup.command import ROOT, run, say
 
+# By the level of the set-up that needs them.
 LIBRARIES = {
-    "tools/emulator": "build/emulator/libtilenca_emulator.so",
-    "tools/simulator": "build/simulator/libtilenca_core.so",
+    "demo": {
+        "tools/emulator": "build/emulator/libtilenca_emulator.so",
+        "tools/simulator": "build/simulator/libtilenca_core.so",
+    },
+    "train": {"tools/training": "build/training/libtilenca_life.so"},
 }
 
 
@@ -27,8 +31,8 @@ def install_system_packages(packages: Sequence[str]) -> None:
         raise SystemExit(done.returncode)
 
 
-def build_libraries() -> None:
-    """Compiles the emulator and the firmware's core for this machine; make knows what is up to date.
+def build_libraries(levels: Sequence[str]) -> None:
+    """Compiles what the levels need for this machine; make knows what is up to date.
 
     Raises:
         SetupError: a compilation failed.
@@ -38,7 +42,8 @@ def build_libraries() -> None:
         name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")
     }
     jobs = f"-j{os.cpu_count() or 1}"
-    for folder, library in LIBRARIES.items():
+    wanted = {folder: library for level in levels for folder, library in LIBRARIES.get(level, {}).items()}
+    for folder, library in wanted.items():
         if not (ROOT / library).exists():
             say(f"compiling {folder}")
         run(["make", "--silent", jobs, "-C", folder], f"{folder} does not compile, see above", env=env)
