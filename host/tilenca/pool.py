@@ -11,10 +11,13 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from tilenca.drawings import Batch, Drawings
+from tilenca.curriculum import Curriculum
+from tilenca.drawings import Batch
 from tilenca.recipes import Recipe
 
 States = NDArray[np.float32]
+FORGETS = 0.1  # weight of the newest result in a drawing's share of failures
+HAD_TIME = 40  # rounds undisturbed after which a wrong tile counts as a failure
 
 
 @dataclass
@@ -43,32 +46,51 @@ class Taken:
         states: (N, C) float32.
         settled: (B,) bool, left alone for so long that nothing should change any more.
         late: (B,) bool, tissues to be switched on tile by tile.
+        away: (N,) bool, tiles that are off, and will be back in the seed state when the tissue is next taken.
     """
 
     batch: Batch
     states: States
     settled: NDArray[np.bool_]
     late: NDArray[np.bool_]
+    away: NDArray[np.bool_]
+
+    @property
+    def asked(self) -> NDArray[np.bool_]:
+        """(B,) whether a tissue must be right: it is all there, and was from the beginning."""
+        return ~(self.late | np.logical_or.reduceat(self.away, self.batch.starts))
 
 
 class Pools:
     """The busy and the quiet pool of one training run; without pools every sample is fresh."""
 
     def __init__(
-        self, recipe: Recipe, drawings: Drawings, channels: int, random: np.random.Generator
+        self, recipe: Recipe, curriculum: Curriculum, channels: int, random: np.random.Generator
     ) -> None:
         self.recipe = recipe
-        self.drawings = drawings
+        self.drawings = drawings = curriculum.drawings
+        self.curriculum = curriculum
         self.random = random
         self.channels = channels
+        self._seed = np.eye(1, channels, dtype=np.float32)
+        # How often a drawing failed lately, 0..1; all are thought to fail until they were seen.
+        self.failures = np.ones(len(drawings))
+        groups = np.array(drawings.groups)
+        self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
+        self._weigh(0.0)
         self.busy = self._fresh(recipe.pool)
         self.quiet = self._fresh(recipe.quiet_pool)
 
-    def take(self) -> Taken:
-        """Draws a batch, some of it disturbed."""
+    def take(self, progress: float) -> Taken:
+        """Draws a batch, some of it disturbed.
+
+        Args:
+            progress: 0..1 over the training; it decides how much of what is not whole is among the drawings.
+        """
         recipe, random = self.recipe, self.random
+        self._weigh(progress)
         busy_count = recipe.batch - recipe.quiet_batch
-        resets = 0
+        resets = switches = 0
         if recipe.pool == 0:
             self.busy = self._fresh(busy_count)
             self._busy_taken = np.arange(busy_count)
@@ -91,36 +113,52 @@ class Pools:
         settled[busy_count:] = self.quiet.age[self._quiet_taken] >= recipe.quiet_rounds[0] // 2
         late = np.zeros(recipe.batch, np.bool_)
         late[:resets] = random.random(resets) < recipe.late
-        return Taken(batch, states[batch.sample, batch.place], settled, late)
+        away = np.zeros(len(batch.sample), np.bool_)
+        first = resets + switches
+        for number in range(first, first + round(recipe.away * busy_count)):
+            size = self.drawings.sizes[chosen[number]]
+            away[batch.starts[number] + random.integers(size, size=random.integers(1, 3))] = True
+        return Taken(batch, states[batch.sample, batch.place], settled, late, away)
 
-    def give_back(self, batch: Batch, states: States, rounds: int) -> None:
+    def give_back(
+        self, taken: Taken, states: States, rounds: NDArray[np.int64], right: NDArray[np.bool_]
+    ) -> None:
         """Stores what became of the batch last taken.
 
         Args:
-            batch: the batch.
+            taken: the batch.
             states: (N, C) float32.
-            rounds: how many rounds it lived.
+            rounds: (B,) how many rounds each tissue lived.
+            right: (B,) whether all its tiles were right at the end.
         """
+        batch = taken.batch
         padded = np.zeros((len(batch.starts), *self.busy.states.shape[1:]), np.float32)
-        padded[batch.sample, batch.place] = states
+        padded[batch.sample, batch.place] = np.where(taken.away[:, None], self._seed, states)
         busy_count = len(self._busy_taken)
         self.busy.states[self._busy_taken] = padded[:busy_count]
-        self.busy.age[self._busy_taken] += rounds
+        self.busy.age[self._busy_taken] += rounds[:busy_count]
+        self.busy.age[self._busy_taken[~taken.asked[:busy_count]]] = 0
         self.quiet.states[self._quiet_taken] = padded[busy_count:]
-        self.quiet.age[self._quiet_taken] += rounds
+        self.quiet.age[self._quiet_taken] += rounds[busy_count:]
+        # Who was disturbed a moment ago may be wrong; who had time may not.
+        had_time = self.busy.age[self._busy_taken] >= HAD_TIME
+        seen = self.busy.drawing[self._busy_taken][had_time]
+        self.failures[seen] += FORGETS * (~right[:busy_count][had_time] - self.failures[seen])
 
     def state(self) -> dict[str, Any]:
         """Everything that changes, as plain values and tensors for a checkpoint."""
-        return {
+        state: dict[str, Any] = {
             name: {field.name: torch.from_numpy(getattr(pool, field.name)) for field in fields(pool)}
             for name, pool in (("busy", self.busy), ("quiet", self.quiet))
         }
+        return state | {"failures": torch.from_numpy(self.failures)}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Takes back what `state` gave."""
         for name, pool in (("busy", self.busy), ("quiet", self.quiet)):
             for field in fields(pool):
                 setattr(pool, field.name, state[name][field.name].cpu().numpy().copy())
+        self.failures = state["failures"].cpu().numpy().copy()
 
     def _fresh(self, count: int) -> Pool:
         shape = (count, int(self.drawings.sizes.max()), self.channels)
@@ -130,9 +168,22 @@ class Pools:
             self.reset(pool, number)
         return pool
 
+    def _weigh(self, progress: float) -> None:
+        """Half-way between the drawings' weights and those times how often they fail, or as `hard` says."""
+        least, (begin, end) = 0.05, self.recipe.ramp
+        grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
+        weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)
+        failing = weights * (self.failures + 1e-3)
+        self._chances = (1 - self.recipe.hard) * weights / weights.sum()
+        self._chances += self.recipe.hard * failing / failing.sum()
+
+    def _pick(self, among: NDArray[np.int64]) -> int:
+        upto = np.cumsum(self._chances[among])
+        return int(among[min(np.searchsorted(upto, self.random.random() * upto[-1]), len(among) - 1)])
+
     def reset(self, pool: Pool, number: int) -> None:
         """Puts down any drawing anew, every tile in its seed state."""
-        drawing = int(self.random.integers(len(self.drawings)))
+        drawing = self._pick(np.arange(len(self.drawings)))
         pool.drawing[number] = drawing
         pool.states[number] = 0.0
         pool.states[number, : self.drawings.sizes[drawing], 0] = 1.0
@@ -142,11 +193,11 @@ class Pools:
     def switch(self, pool: Pool, number: int) -> None:
         """Rebuilds a tissue into another drawing of its file; tiles that stay keep their state."""
         old = int(pool.drawing[number])
-        groups = self.drawings.groups
-        others = [n for n in range(len(self.drawings)) if groups[n] == groups[old] and n != old]
-        if not others:
+        others = self._same_scale[self.drawings.groups[old]]
+        others = others[others != old]
+        if not len(others):
             return self.reset(pool, number)
-        new = int(self.random.choice(others))
+        new = self._pick(others)
         stays = self.drawings.overlap(old, new, self.random)
         before = pool.states[number].copy()
         pool.drawing[number] = new

@@ -12,17 +12,23 @@ class Recipe:
     A *round* is one step of training, in which some of the tiles update; rates are fractions 0..1.
 
     Attributes:
+        hidden: width of both hidden layers, where `--hidden` does not say.
+        seeds: trainings side by side, of which the best is kept, where `--seeds` does not say.
         iterations: optimiser steps.
         batch: drawings per optimiser step, those of the quiet pool included.
-        rounds: least and most rounds per optimiser step.
-        learning_rate: Adam's; `cosine` lets it fall to zero over the iterations.
+        rounds: least and most rounds per optimiser step; up to twice as many for large drawings.
+        learning_rate: Adam's; it falls by the share `cosine` of it, along a cosine over the iterations.
         clip_norm: limit of the gradient's norm; 0: none.
+        average: how much of the running mean of the weights, which is what is kept, stays in every iteration;
+            0: the last weights are kept.
         bounded: the tile's own arithmetic in the loop: clamped states and activations, byte messages.
         pool: tissues kept from one iteration to the next; 0: every sample starts from the seed state.
         reset: share of a batch taken back to the seed state.
         late: share of the samples taken back to the seed in which tiles are switched on one after the other;
             what the first ones make of it is not held against them, but they must get over it later.
         switch: share of a batch rebuilt into another drawing while running.
+        away: share of a batch in which a tile or two are off for once; what the others make of it is not held
+            against them.
         quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, so that nothing drifts; 0: none.
         quiet_batch: how many of them are in each batch.
         quiet_rounds: least and most rounds of an undisturbed life.
@@ -34,20 +40,35 @@ class Recipe:
         latency: least and most delay of a message, in periods.
         lossy: share of samples that lose messages; a lost one reads as zero.
         max_loss: largest share of messages lost.
-        validation_runs: runs of each drawing and schedule in the final measurement.
+        unheard: share of samples in which what a tile sends is now and then heard by nobody; its neighbours
+            go on with what they heard before.
+        max_unheard: largest share of messages that nobody hears.
+        stretch: largest factor by which drawings are stretched, where the shape file has sizes; 1: not.
+        stretched: share of stretched drawings among the tissues.
+        damaged: share of drawings with one tile missing.
+        unknown: share of drawings of no class, whose tiles learn to show a dash.
+        ramp: between these shares of the iterations damaged and unknown drawings grow to their full share.
+        hard: how much of the choice of drawings goes by how often each failed lately.
+        check_every: iterations from one short measurement to the next; training ends early when all targets
+            hold in several of them; 0: never.
+        validation_runs: runs of each drawing in the final measurement.
     """
 
+    hidden: int
     iterations: int
     batch: int
     rounds: tuple[int, int]
     learning_rate: float
-    cosine: bool
+    cosine: float
     clip_norm: float
     bounded: bool
+    seeds: int = 1
+    average: float = 0.0
     pool: int = 0
     reset: float = 0.0
     late: float = 0.0
     switch: float = 0.0
+    away: float = 0.0
     quiet_pool: int = 0
     quiet_batch: int = 0
     quiet_rounds: tuple[int, int] = (200, 4000)
@@ -59,22 +80,35 @@ class Recipe:
     latency: tuple[float, float] = (0.1, 0.9)
     lossy: float = 0.0
     max_loss: float = 0.0
-    validation_runs: int = 50
+    unheard: float = 0.0
+    max_unheard: float = 0.0
+    stretch: float = 1.0
+    stretched: float = 0.0
+    damaged: float = 0.0
+    unknown: float = 0.0
+    ramp: tuple[float, float] = (0.0, 0.0)
+    hard: float = 0.0
+    check_every: int = 0
+    validation_runs: int = 100
 
 
-# What real tiles need: nobody is reset, clocks differ, messages get lost, and the state must never drift.
-DEFAULT = Recipe(
-    iterations=18_000,
+# What real tiles need: nobody is reset, clocks differ, messages and tiles get lost, states never drift,
+# and a shape that is none of the task's must not be taken for one.
+FULL = Recipe(
+    hidden=96,
+    iterations=60_000,
     batch=32,
     rounds=(14, 34),
-    learning_rate=2e-3,
-    cosine=True,
+    learning_rate=1e-3,
+    cosine=0.75,
     clip_norm=1.0,
+    average=0.9995,
     bounded=True,
     pool=640,
     reset=0.15,
     late=0.5,
     switch=0.25,
+    away=0.1,
     quiet_pool=128,
     quiet_batch=10,
     quiet_penalty=0.05,
@@ -82,29 +116,56 @@ DEFAULT = Recipe(
     clocks=0.5,
     lossy=0.5,
     max_loss=0.3,
+    unheard=0.5,
+    max_unheard=0.7,
+    stretch=10.0,
+    stretched=0.28,
+    damaged=0.17,
+    unknown=0.3,
+    ramp=(0.05, 0.2),
+    hard=0.6,
+    check_every=4_000,
+    validation_runs=500,
 )
 
 RECIPES: dict[str, Recipe] = {
-    "default": DEFAULT,
+    "full": FULL,
+    # For trying out drawings: three sizes, no damage, no unknown drawings.
+    "quick": replace(
+        FULL,
+        hidden=64,
+        iterations=12_000,
+        stretch=1.5,
+        stretched=0.4,
+        damaged=0.0,
+        unknown=0.0,
+        check_every=1_000,
+        validation_runs=100,
+    ),
     # As published: no pool, no limits, one sampler.
     "paper": Recipe(
+        hidden=40,
         iterations=2_500,
         batch=128,
         rounds=(9, 29),
         learning_rate=1e-3,
-        cosine=False,
+        cosine=0.0,
         clip_norm=0.0,
         bounded=False,
     ),
     # Seconds long and of no use on tiles: shows that the whole chain works.
     "smoke": replace(
-        DEFAULT,
+        FULL,
+        hidden=40,
+        seeds=1,
         iterations=40,
         batch=8,
         rounds=(4, 8),
         pool=32,
         quiet_pool=8,
         quiet_batch=2,
+        stretch=1.5,
+        check_every=20,
         validation_runs=2,
     ),
 }

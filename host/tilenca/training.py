@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
-from tilenca.drawings import Batch, Drawings
+from tilenca.curriculum import Curriculum
+from tilenca.drawings import Batch
 from tilenca.errors import TilencaError, UsageError
 from tilenca.model import TileNet, initial_arrays
 from tilenca.modelfile import Dimensions
@@ -22,7 +24,8 @@ from tilenca.recipes import Recipe
 from tilenca.rollout import live
 from tilenca.schedule import draw_schedule
 
-HISTORY_EVERY = 50  # iterations that one row of the history averages
+TILES_PER_LIFE, LONGEST_LIFE = 16, 2.0
+HISTORY_ROWS, HISTORY_EVERY = 200, 100  # so many rows at least, one for so many iterations at most
 
 
 @dataclass(frozen=True)
@@ -62,23 +65,36 @@ class Trainer:
 
     Args:
         config: what to train.
-        drawings: the task; must be the one `config` names.
+        curriculum: what to look at; must be made of the task that `config` names.
         device: where the tensors live.
     """
 
-    def __init__(self, config: Config, drawings: Drawings, device: torch.device) -> None:
+    def __init__(self, config: Config, curriculum: Curriculum, device: torch.device) -> None:
         self.config = config
-        self.drawings = drawings
+        self.drawings = curriculum.drawings
         self.device = device
         self.random = np.random.default_rng(config.seed)
         self.net = TileNet(
             config.dimensions, config.recipe.bounded, initial_arrays(config.dimensions, self.random)
         ).to(device)
+        # What is kept in the end: the mean of the last thousand or so weights, far steadier than any of them.
+        self.average = {name: value.detach().clone() for name, value in self.net.named_parameters()}
         self.optimizer = torch.optim.Adam(self.net.parameters(), lr=config.recipe.learning_rate)
-        self.pools = Pools(config.recipe, drawings, config.dimensions.channels, self.random)
+        self.pools = Pools(config.recipe, curriculum, config.dimensions.channels, self.random)
         self.iteration = 0
+        self.ended = False  # before the last iteration, since all targets held
         self.history: list[tuple[int, float, float]] = []  # iteration, and means since the row before
+        self.checks: list[tuple[int, float, dict[str, float]]] = []  # iteration, shortfall, shares right
         self._since: list[tuple[float, float]] = []
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to train."""
+        return self.ended or self.iteration >= self.config.recipe.iterations
+
+    def arrays(self) -> dict[str, NDArray[np.float32]]:
+        """The weights to keep, by name, as `Model.floats` wants them."""
+        return {name: value.cpu().numpy().copy() for name, value in self.average.items()}
 
     def recent(self) -> tuple[float, float]:
         """Mean loss and agreement of the last iterations, for the eye."""
@@ -94,17 +110,17 @@ class Trainer:
             TilencaError: the loss is not a number any more.
         """
         recipe = self.config.recipe
-        taken = self.pools.take()
+        taken = self.pools.take(self.iteration / recipe.iterations)
         batch = taken.batch
-        rounds = int(self.random.integers(recipe.rounds[0], recipe.rounds[1] + 1))
-        schedule = draw_schedule(recipe, batch, rounds, self.random, taken.late)
+        lives = self._lives(batch)
+        schedule = draw_schedule(recipe, batch, lives, self.random, taken.late, taken.away)
 
         start = torch.from_numpy(taken.states).to(self.device)
         end = live(self.net, start * self.net.units, schedule) / self.net.units
         target = torch.from_numpy(batch.target).to(self.device)
         scores = end[:, -len(self.config.labels) :]
         wanted = torch.nn.functional.one_hot(target, scores.shape[1]).to(scores.dtype)
-        counts = torch.from_numpy(~taken.late[batch.sample]).to(self.device)
+        counts = torch.from_numpy(taken.asked[batch.sample]).to(self.device)
         loss = ((scores - wanted).square().sum(dim=1) * counts).mean()
         if recipe.quiet_penalty > 0:
             # Only where all is well: a settled wrong answer must stay free to change.
@@ -113,14 +129,22 @@ class Trainer:
             loss = loss + recipe.quiet_penalty * ((end - start).square().sum(dim=1) * still).mean()
 
         self._descend(loss)
-        self.pools.give_back(batch, end.detach().cpu().numpy(), rounds)
+        right = _all_right(scores, target, batch)
+        self.pools.give_back(taken, end.detach().cpu().numpy(), lives, right)
         self.iteration += 1
-        report = StepReport(self.iteration, loss.item(), _agreement(scores, target, batch))
+        report = StepReport(self.iteration, loss.item(), float(right.mean()))
         self._since.append((report.loss, report.agreement))
-        if self.iteration % HISTORY_EVERY == 0:
+        if self.iteration % max(1, min(HISTORY_EVERY, recipe.iterations // HISTORY_ROWS)) == 0:
             self.history.append((self.iteration, *self.recent()))
             self._since.clear()
         return report
+
+    def _lives(self, batch: Batch) -> NDArray[np.int64]:
+        """Rounds that each sample lives: drawn from the recipe's range, more where the sample is large."""
+        least, most = self.config.recipe.rounds
+        rounds = int(self.random.integers(least, most + 1))
+        tiles = np.diff(np.append(batch.starts, len(batch.sample)))
+        return np.round(rounds * np.clip(tiles / TILES_PER_LIFE, 1, LONGEST_LIFE)).astype(np.int64)
 
     def _descend(self, loss: Tensor) -> None:
         recipe = self.config.recipe
@@ -130,9 +154,9 @@ class Trainer:
                 "try another --seed, or a recipe with a lower learning rate"
             )
         if recipe.cosine:
-            progress = self.iteration / recipe.iterations
+            fall = 0.5 * (1 - math.cos(math.pi * self.iteration / recipe.iterations))
             for group in self.optimizer.param_groups:
-                group["lr"] = recipe.learning_rate * 0.5 * (1 + math.cos(math.pi * progress))
+                group["lr"] = recipe.learning_rate * (1 - recipe.cosine * fall)
         self.optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
         if recipe.clip_norm > 0:
@@ -140,6 +164,10 @@ class Trainer:
         self.optimizer.step()
         if recipe.bounded:
             self.net.project()
+        keep = min(recipe.average, self.iteration / (self.iteration + 10))
+        with torch.no_grad():
+            for name, value in self.net.named_parameters():
+                self.average[name].lerp_(value, 1 - keep)
 
     def save(self, path: Path) -> None:
         """Writes a checkpoint; an interrupted write leaves the one before."""
@@ -147,10 +175,12 @@ class Trainer:
             "config": self.config.as_json(),
             "iteration": self.iteration,
             "random": self.random.bit_generator.state,
+            "ended": self.ended,
             "net": self.net.state_dict(),
+            "average": self.average,
             "optimizer": self.optimizer.state_dict(),
             "pools": self.pools.state(),
-            "history": (self.history, self._since),
+            "history": (self.history, self._since, self.checks),
         }
         partial = path.with_suffix(".part")
         torch.save(state, partial)
@@ -182,10 +212,12 @@ class Trainer:
         self.optimizer.load_state_dict(state["optimizer"])
         self.pools.restore(state["pools"])
         self.random.bit_generator.state = state["random"]
-        self.history, self._since = ([tuple(row) for row in rows] for rows in state["history"])
-        self.iteration = iteration
+        self.history, self._since, self.checks = ([tuple(row) for row in rows] for rows in state["history"])
+        self.average = state["average"]
+        self.iteration, self.ended = iteration, state["ended"]
 
 
-def _agreement(scores: Tensor, target: Tensor, batch: Batch) -> float:
+def _all_right(scores: Tensor, target: Tensor, batch: Batch) -> NDArray[np.bool_]:
     wrong = (scores.detach().argmax(dim=1) != target).cpu().numpy()
-    return float((np.add.reduceat(wrong, batch.starts, dtype=np.int64) == 0).mean())
+    right: NDArray[np.bool_] = np.add.reduceat(wrong, batch.starts, dtype=np.int64) == 0
+    return right

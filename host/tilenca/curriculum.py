@@ -1,0 +1,164 @@
+"""What training looks at: a task's drawings, the same stretched, damaged, and drawings of no class.
+
+Every drawing has a scale, within which tissues are rebuilt into each other, and a weight, its share of the
+tissues. All of it follows from the task, the recipe and one generator of chance.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca import variants
+from tilenca.drawings import Drawings
+from tilenca.recipes import Recipe
+from tilenca.shapes import Shape
+from tilenca.sizes import Size, Sizes
+from tilenca.stretch import Rows
+from tilenca.variants import UNKNOWN, Known
+
+DAMAGED = " damaged"
+
+
+@dataclass(frozen=True)
+class Curriculum:
+    """Drawings to train on.
+
+    Attributes:
+        drawings: all of them; `groups` are scales.
+        weights: (S,) float64, share of the tissues that a drawing gets; sums to 1.
+        whole: (S,) bool, drawings of a class without damage: what training begins with.
+    """
+
+    drawings: Drawings
+    weights: NDArray[np.float64]
+    whole: NDArray[np.bool_]
+
+
+def labels_of(task: Drawings, recipe: Recipe, max_classes: int) -> tuple[str, ...]:
+    """The classes to train: the task's, and a dash for what is none of them where the state has room."""
+    if recipe.unknown == 0 or UNKNOWN in task.labels or len(task.labels) == max_classes:
+        return task.labels
+    return (*task.labels, UNKNOWN)
+
+
+def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Generator) -> Curriculum:
+    """Makes the curriculum of a task.
+
+    Args:
+        task: the drawings of the files, with the model's labels.
+        recipe: how much of what.
+        sizes: what the drawings of the first file may be stretched to as well.
+        random: for the drawings of no class.
+    """
+    fitting = sizes.within(task.largest, recipe.stretch)
+    scales = _scales(task, fitting.trained + fitting.more)
+    known = Known((shape.label, shape.rows) for scale in scales for shape in scale)
+    drawn = len(task.sources)
+    drawn_scales, others = range(drawn), range(drawn, len(scales))
+    with_unknown = recipe.unknown > 0 and UNKNOWN in task.labels
+    unknown = {
+        name: list(_unknown(scales, which, each, draw, known, random)) if with_unknown else []
+        for name, which, each, draw in (
+            ("strokes", drawn_scales, 100, _some_strokes),
+            ("edited", drawn_scales, 100, _some_edited),
+            ("halves", drawn_scales, 100, _some_halves),
+            ("grown", drawn_scales, 100, _some_grown),
+            ("elsewhere", others, 8, _some_strokes),
+            ("elsewhere edited", others, 3, _some_edited),
+        )
+    }
+    shares = {
+        "strokes": 0.42,
+        "edited": 0.08,
+        "halves": 0.17,
+        "grown": 0.1,
+        "elsewhere": 0.2,
+        "elsewhere edited": 0.03,
+    }
+    kinds: list[tuple[float, list[tuple[int, Shape]]]] = [
+        (recipe.stretched, [(n, s) for n, scale in enumerate(scales) if n >= drawn for s in scale]),
+        (recipe.damaged, list(_damaged(scales[:1], known)) if recipe.damaged else []),
+        *((recipe.unknown * shares[name], found) for name, found in unknown.items()),
+    ]
+    kinds = [(share, found) for share, found in kinds if share and found]
+    whole = [(number, shape) for number, scale in enumerate(scales[:drawn]) for shape in scale]
+    kinds.insert(0, (1 - sum(share for share, _ in kinds), whole))
+    entries = [entry for _, found in kinds for entry in found]
+    is_whole = [shape.label != UNKNOWN and not shape.name.endswith(DAMAGED) for _, shape in entries]
+    weights = np.concatenate([np.full(len(found), share / len(found)) for share, found in kinds])
+    drawings = replace(
+        task,
+        shapes=tuple(shape for _, shape in entries),
+        groups=tuple(scale for scale, _ in entries),
+    )
+    return Curriculum(drawings, weights, np.array(is_whole))
+
+
+def _scales(task: Drawings, sizes: Sequence[Size]) -> list[list[Shape]]:
+    """The drawings file by file, then those of the first file at every other size."""
+    files = [
+        [shape for shape, group in zip(task.shapes, task.groups, strict=True) if group == number]
+        for number in range(len(task.sources))
+    ]
+    taken: dict[Rows, str] = {shape.rows: shape.label for shape in task.shapes}
+    scales = list(files)
+    for size in sizes:
+        for up in (True, False):
+            scale = []
+            for shape in files[0]:
+                other = shape.stretched(size, up)
+                if other is not None and taken.setdefault(other.rows, shape.label) == shape.label:
+                    scale.append(other)
+            if scale and scale != scales[-1]:
+                scales.append(scale)
+    return scales
+
+
+def _damaged(scales: list[list[Shape]], known: Known) -> Iterator[tuple[int, Shape]]:
+    for number, scale in enumerate(scales):
+        for shape in scale:
+            for rows in known.damaged(shape.label, shape.rows):
+                yield number, Shape(shape.label, rows, f"{shape.name}{DAMAGED}")
+
+
+Drawer = Callable[[Sequence[Rows], np.random.Generator], Callable[[], Rows | None]]
+
+
+def _unknown(
+    scales: list[list[Shape]],
+    which: Iterable[int],
+    each: int,
+    drawer: Drawer,
+    known: Known,
+    random: np.random.Generator,
+) -> Iterator[tuple[int, Shape]]:
+    """Drawings of no class, of every scale in `which`."""
+    for number in which:
+        draw = drawer([shape.rows for shape in scales[number]], random)
+        for rows in variants.draw_until(
+            each, draw, lambda rows: not known.is_known(rows) and not variants.held_out(rows)
+        ):
+            yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")
+
+
+def _some_grown(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    height, width = max(map(len, drawings)), max(len(rows[0]) for rows in drawings)
+    most = max(sum(row.count("#") for row in rows) for rows in drawings)
+    return lambda: variants.grown(random, int(random.integers(3, most + 1)), height + 1, width + 1)
+
+
+def _some_halves(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    return lambda: variants.half(random, drawings[int(random.integers(len(drawings)))])
+
+
+def _some_edited(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    return lambda: variants.edited(
+        random, drawings[int(random.integers(len(drawings)))], int(random.integers(4, 8))
+    )
+
+
+def _some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    strokes = variants.segments(drawings)
+    return lambda: variants.some_segments(random, strokes)
