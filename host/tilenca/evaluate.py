@@ -3,7 +3,7 @@
 import argparse
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca import paths
-from tilenca.arguments import count, seed, share
-from tilenca.drawings import Drawings, load_drawings
+from tilenca.arguments import count, seed, share, size
+from tilenca.drawings import Drawings, load_drawings, load_training_task
 from tilenca.errors import BuildError, UsageError
+from tilenca.exam import Aims, set_exam
 from tilenca.modelfile import Model, load_model
 from tilenca.shapes import load_task
 from tilenca.simulate import Conditions, Engine, FastEngine, Simulator
+from tilenca.sizes import Size, size_name
 from tilenca.tables import table
-from tilenca.validation import SETTLED, settle_times
+from tilenca.validation import SETTLED, settle_times, validate
 
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
 
@@ -61,6 +63,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps", type=count, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
     )
     parser.add_argument("--runs", type=count, metavar="N", help="runs per drawing (100; emulator: 1)")
+    parser.add_argument(
+        "--size",
+        type=size,
+        metavar="RxC",
+        help="stretch the drawings to so many rows and columns, like 9x7",
+    )
+    parser.add_argument(
+        "--exam",
+        action="store_true",
+        help="measure all that a model card shows: sizes, loss, damage, changes, unknown shapes, long runs",
+    )
     parser.add_argument("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1")
     parser.add_argument(
         "--lost",
@@ -81,7 +94,11 @@ def run(args: argparse.Namespace) -> int:
     """Measures and prints."""
     runs = RUNS[args.engine] if args.runs is None else args.runs
     model = load_model(args.model)
+    if args.exam:
+        return _exam(args, model)
     drawings = load_drawings(args.shapes, labels=model.labels)
+    if args.size is not None:
+        drawings = _at_size(drawings, args.size)
     chosen = np.repeat(np.arange(len(drawings)), runs)
     if args.engine == "emulator":
         outcome = _emulate(args, model, drawings, chosen)
@@ -97,6 +114,45 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print(report)
     return 0
+
+
+def _exam(args: argparse.Namespace, model: Model) -> int:
+    """The card's measurements, which the same seed and number of runs repeat."""
+    for option, given in (("--engine", args.engine != "fast"), ("--size", args.size), ("--dead", args.dead)):
+        if given:
+            raise UsageError(f"--exam measures everything on the fast engine; leave {option} out")
+    aims = _aims(model)
+    task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
+    exam = set_exam(task, sizes, model.labels, aims, args.seed)
+    say = (lambda _: None) if args.json else print
+    metrics = validate(FastEngine(model), exam, args.runs or RUNS["fast"], args.seed, say)
+    if args.json:
+        print(json.dumps({"model": f"{model.model_id:04X}", "metrics": metrics}))
+    else:
+        print(f"{metrics['targets_held']} targets held")
+    return 0
+
+
+def _aims(model: Model) -> Aims:
+    """What the model says it was trained for; nothing beyond its drawings where it does not say."""
+    recipe = model.made.get("recipe", {})
+    stretch, damaged = (recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0)))
+    if not all(isinstance(value, int | float) for value in (stretch, damaged)):
+        raise UsageError(f"model {model.model_id:04X}: made.recipe has no numbers in it; check out again")
+    return Aims(float(stretch), damaged > 0)
+
+
+def _at_size(drawings: Drawings, wanted: Size) -> Drawings:
+    """The drawings that can be drawn at that size."""
+    found = [
+        (other, group)
+        for shape, group in zip(drawings.shapes, drawings.groups, strict=True)
+        if (other := shape.stretched(wanted)) is not None
+    ]
+    if not found:
+        raise UsageError(f"--size {size_name(wanted)}: no drawing can be drawn that small; give a larger one")
+    shapes, groups = zip(*found, strict=True)
+    return replace(drawings, shapes=shapes, groups=groups)
 
 
 def _engine(name: str, model: Model) -> Engine:

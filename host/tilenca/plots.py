@@ -96,8 +96,8 @@ def plot_history(
     Args:
         rows: one per point, values in the order of `columns`; None or NaN: not measured there.
         path: PNG or SVG.
-        columns: `iteration`, `loss`, `agreement`, and any number of validation columns named like `@60`;
-            others are left out.
+        columns: `iteration`, `loss`, `agreement`, and any number of measured columns named like `@60` or
+            `@sizes`; others are left out.
         title: stands above.
 
     Raises:
@@ -134,7 +134,7 @@ def _draw_loss(axes: Axes, iteration: NDArray[np.float64], loss: NDArray[np.floa
 def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
     lines = ["agreement", *(name for name in data if name.startswith("@"))]
     for number, name in enumerate(lines):
-        label = "training samples" if number == 0 else f"validation after {name[1:]} steps"
+        label = "training samples" if number == 0 else _question(name[1:])
         _draw_line(axes, data["iteration"], data[name], number, label)
     if len(lines) > 1:
         axes.legend(loc="lower right")
@@ -144,6 +144,10 @@ def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0%}"))
+
+
+def _question(name: str) -> str:
+    return f"measured after {name} steps" if name.isdigit() else f"measured: {name}"
 
 
 def _draw_line(

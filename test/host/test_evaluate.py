@@ -15,6 +15,7 @@ from tilenca import cli, native, paths
 from tilenca.drawings import Drawings, load_drawings
 from tilenca.errors import UsageError
 from tilenca.modelfile import load_model
+from tilenca.shapes import load_task
 from tilenca.simulate import Conditions, Course, Simulator, States
 from tilenca.validation import settle_times
 
@@ -274,3 +275,30 @@ def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> N
         load_drawings([paths.DEFAULT_SHAPES, shapes])
     with pytest.raises(UsageError, match="all of its drawings"):
         load_drawings([shapes, shapes])
+
+
+def test_the_exam_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "--exam", "--runs", "1", "--seed", "3"]
+    assert cli.main([*words, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert cli.main(words) == 0
+    table = capsys.readouterr().out
+    assert {row["key"] for row in document["metrics"]["rows"]} >= {"drawings", "sizes", "lost", "longevity"}
+    for row in document["metrics"]["rows"]:
+        assert f"{row['name']}, @{row['steps']}: {row['share']:.4f}" in table
+
+
+@pytest.mark.parametrize("words", [["--size", "9x7"], ["--engine", "float"], ["--dead", "0.1"]])
+def test_the_exam_sets_its_own_conditions(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["evaluate", "--exam", *words]) == 2
+    assert f"leave {words[0]} out" in capsys.readouterr().err
+
+
+def test_drawings_are_stretched_to_the_size_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["evaluate", "--size", "7x6", "--runs", "1", "--json"]) == 0
+    found = {row["label"]: row["grid"] for row in json.loads(capsys.readouterr().out)["per_shape"]}
+    drawn = {shape.label: shape.grid for shape in load_task(paths.SHAPES / "digits-7x6.toml").shapes}
+    drawn["1"] = found["1"]  # a line has no width
+    assert found == drawn
+    assert cli.main(["evaluate", "--size", "2x2", "--runs", "1", "--json"]) == 0
+    assert [row["label"] for row in json.loads(capsys.readouterr().out)["per_shape"]] == ["1"]

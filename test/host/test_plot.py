@@ -187,11 +187,11 @@ def test_all_validation_columns_are_drawn_where_they_were_measured(figures: list
     assert legend is not None
     assert [text.get_text() for text in legend.get_texts()] == [
         "training samples",
-        "validation after 60 steps",
-        "validation after 1000 steps",
+        "measured after 60 steps",
+        "measured after 1000 steps",
     ]
     lines = {line.get_label(): line for line in lower.get_lines()}
-    measured = lines["validation after 60 steps"]
+    measured = lines["measured after 60 steps"]
     assert list(np.asarray(measured.get_xdata())) == [50, 1050, 2050, 3050, 4050]
     assert set(np.asarray(measured.get_ydata())) == {0.5}
 

@@ -1,0 +1,181 @@
+"""What a model is asked: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
+
+Nothing here was trained on but the drawings themselves: sizes held out, and unknown drawings held out.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tilenca import variants
+from tilenca.drawings import Drawings, load_drawings
+from tilenca.recipes import Recipe
+from tilenca.shapes import Shape
+from tilenca.sizes import Size, Sizes, size_name
+from tilenca.stretch import Rows
+from tilenca.variants import UNKNOWN, Known
+
+LARGE = 42  # a drawing with a larger bounding box gets 100 steps to agree, not 60
+VERY_LARGE = 196  # and beyond this 200
+
+
+@dataclass(frozen=True)
+class Paper:
+    """One set of drawings to ask about.
+
+    Attributes:
+        name: as tables call it.
+        drawings: with the model's labels.
+        steps: after how many steps all tiles must agree.
+        held_out: whether training never saw these drawings.
+        aimed: whether the model was trained for such drawings, so that there is a target to reach.
+    """
+
+    name: str
+    drawings: Drawings
+    steps: int
+    held_out: bool = False
+    aimed: bool = True
+
+
+@dataclass(frozen=True)
+class Exam:
+    """All sets of a task.
+
+    Attributes:
+        drawn: the drawings of the files, one paper for each.
+        sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone.
+        damaged: one tile missing where that leaves no doubt about the class; None: no such case.
+        unknown: drawings of no class; empty where the model has no class for them.
+        larger: the first file's drawings at a larger trained size, and at the largest.
+    """
+
+    drawn: tuple[Paper, ...]
+    sizes: tuple[Paper, ...]
+    damaged: Paper | None
+    unknown: tuple[Paper, ...]
+    larger: tuple[Paper, ...]
+
+
+@dataclass(frozen=True)
+class Aims:
+    """What a model was trained for, beside the drawings of the files.
+
+    Attributes:
+        stretch: largest factor of the drawn size.
+        damaged: whether tiles may be missing.
+    """
+
+    stretch: float = 1.0
+    damaged: bool = False
+
+
+def aims_of(recipe: Recipe) -> Aims:
+    """What a recipe trains for."""
+    return Aims(recipe.stretch, recipe.damaged > 0)
+
+
+def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Exam:
+    """Sets the exam of a task.
+
+    Args:
+        task: the drawings of its files.
+        sizes: of the task.
+        labels: the model's.
+        aims: what it was trained for.
+        seed: of the unknown drawings.
+    """
+    task = replace(task, labels=labels)
+    first = [shape for shape, group in zip(task.shapes, task.groups, strict=True) if group == 0]
+    drawn = tuple(
+        Paper(source["file"], task.chosen(n for n, group in enumerate(task.groups) if group == number), 60)
+        for number, source in enumerate(task.sources)
+    )
+    known = Known((shape.label, shape.rows) for shape in task.shapes)
+    damaged = [
+        Shape(shape.label, rows, f"{shape.name} less one")
+        for shape in first
+        for rows in known.damaged(shape.label, shape.rows)
+    ]
+    return Exam(
+        drawn,
+        tuple(_size_papers(task, first, sizes, sizes.within(task.largest, aims.stretch))),
+        Paper("one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
+        tuple(_unknown_papers(task, first, known, seed)) if UNKNOWN in labels else (),
+        tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
+    )
+
+
+def _at_size(first: Sequence[Shape], size: Size) -> list[Shape]:
+    return [other for shape in first if (other := shape.stretched(size)) is not None]
+
+
+def _steps(size: Size) -> int:
+    area = size[0] * size[1]
+    return 60 if area <= LARGE else 100 if area <= VERY_LARGE else 200
+
+
+def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Paper]:
+    trained = _distinct(shape for size in aimed.trained for shape in _at_size(first, size))
+    trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
+    if trained:
+        yield Paper("all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
+    new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
+    most = max(aimed.trained, default=(0, 0), key=lambda size: size[0] * size[1])
+    for path in sizes.drawn:
+        drawings = load_drawings([path], labels=task.labels)
+        yield Paper(f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+    for size in new:
+        if shapes := _distinct(_at_size(first, size)):
+            # Half as large again as what was trained on is asked of a model, not more.
+            yield Paper(
+                f"{size_name(size)}, never trained on",
+                task.of(shapes),
+                _steps(size),
+                held_out=True,
+                aimed=size[0] <= 1.5 * most[0] and size[1] <= 1.5 * most[1],
+            )
+
+
+def _larger_sizes(task: Drawings, sizes: Sizes) -> list[Size]:
+    """The trained sizes with about half as many rows and columns again, or more."""
+    height, width = task.largest
+    return [size for size in sizes.trained if size[0] >= 1.4 * height and size[1] >= 1.4 * width]
+
+
+def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Paper]:
+    """A larger size, and the largest."""
+    wanted = _larger_sizes(task, sizes)
+    for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
+        yield Paper(size_name(size), task.of(_at_size(first, size)), _steps(size))
+
+
+def _unknown_papers(task: Drawings, first: Sequence[Shape], known: Known, seed: int) -> Iterable[Paper]:
+    random = np.random.default_rng(seed)
+    drawings = [shape.rows for shape in first]
+    height, width = task.largest
+    most = max(len(shape.cells) for shape in first)
+    strokes = variants.segments(drawings)
+
+    def grown() -> Rows:
+        return variants.grown(random, int(random.integers(4, most + 1)), height + 1, width + 1)
+
+    def halved() -> Rows:
+        return variants.half(random, drawings[int(random.integers(len(drawings)))])
+
+    def fits(rows: Rows) -> bool:
+        return variants.held_out(rows) and not known.is_known(rows)
+
+    for name, draw in (
+        ("random drawings", grown),
+        ("halves of drawings", halved),
+        ("other choices of the same strokes", lambda: variants.some_segments(random, strokes)),
+    ):
+        if found := variants.draw_until(100, draw, fits):
+            shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
+            yield Paper(f"no class: {name}, never trained on", task.of(shapes), 60, held_out=True)
+
+
+def _distinct(shapes: Iterable[Shape]) -> list[Shape]:
+    return list({shape.rows: shape for shape in shapes}.values())

@@ -1,0 +1,100 @@
+"""Writes a trained model, its card, metrics and history; never over a better one."""
+
+import csv
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tilenca.card import render_card
+from tilenca.errors import TilencaError
+from tilenca.modelfile import Model
+from tilenca.plots import plot_history
+from tilenca.streams import warn
+
+
+@dataclass(frozen=True)
+class Result:
+    """What training brought.
+
+    Attributes:
+        model: the integer model.
+        metrics: of `validation.validate`, and how training ended.
+        history: (iteration, loss, agreement) now and then.
+        checks: (iteration, shortfall, share by kind of question) of the short measurements.
+    """
+
+    model: Model
+    metrics: dict[str, Any]
+    history: list[tuple[int, float, float]]
+    checks: list[tuple[int, float, dict[str, float]]]
+
+
+def keep(directory: Path, result: Result) -> Path:
+    """Writes the model; returns where.
+
+    Where a better model of the same classes lies already, the new one goes into a folder beside its files.
+
+    Raises:
+        TilencaError: the disk is full or not writable.
+    """
+    try:
+        if (better := _better(directory, result)) is not None:
+            place = directory / f"model-{result.model.model_id:04X}"
+            warn(
+                f"{directory}: holds the better model (short of its targets by {better:.4f}, the new one by "
+                f"{result.metrics['shortfall']:.4f}) and keeps it; the new one is in {place}"
+            )
+            directory = place
+        _write(directory, result)
+    except OSError as error:
+        raise TilencaError(
+            f"{directory}: cannot write the model ({error.strerror}); free some space and --resume"
+        ) from error
+    return directory
+
+
+def _better(directory: Path, result: Result) -> float | None:
+    """The shortfall of the model that lies there, if it is smaller and was measured at the same questions."""
+    try:
+        old = json.loads((directory / "metrics.json").read_text(encoding="utf-8"))
+        asked = [(row["name"], row["steps"], row["target"]) for row in old["rows"]]
+        shortfall = float(old["shortfall"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    same = asked == [(row["name"], row["steps"], row["target"]) for row in result.metrics["rows"]]
+    return shortfall if same and shortfall < result.metrics["shortfall"] else None
+
+
+def _write(directory: Path, result: Result) -> None:
+    result.model.save(directory)
+    (directory / "metrics.json").write_text(json.dumps(result.metrics, indent=2) + "\n", encoding="utf-8")
+    (directory / "history.csv").write_text(history_csv(result), encoding="utf-8")
+    (directory / "README.md").write_text(render_card(result.model, result.metrics), encoding="utf-8")
+    if result.history:
+        columns, rows = history_table(result)
+        title = f"Training of model {result.model.model_id:04X}"
+        plot_history(rows, directory / "history.png", columns, title)
+
+
+def history_table(result: Result) -> tuple[list[str], list[list[float | None]]]:
+    """Columns, and a row for every entry of the history; shares only where they were measured, else None."""
+    kinds = list(dict.fromkeys(kind for _, _, shares in result.checks for kind in shares))
+    checks = {iteration: shares for iteration, _, shares in result.checks}
+    rows: list[list[float | None]] = [
+        [iteration, loss, agreement, *(checks.get(iteration, {}).get(kind) for kind in kinds)]
+        for iteration, loss, agreement in result.history
+    ]
+    return ["iteration", "loss", "agreement", *(f"@{kind}" for kind in kinds)], rows
+
+
+def history_csv(result: Result) -> str:
+    """The history as a file."""
+    columns, rows = history_table(result)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    for iteration, loss, *shares in rows:
+        writer.writerow([iteration, f"{loss:.6f}", *("" if x is None else f"{x:.4f}" for x in shares)])
+    return text.getvalue()
