@@ -22,9 +22,19 @@ from tilenca.protocol import MAX_CHANNELS as MAX_CHANNELS  # 5 * channels fit th
 from tilenca.protocol import crc16
 
 FORMAT = 1
-CHECKPOINT = "checkpoint.pt"  # what an unfinished training run leaves in the directory
 TAPS = 5  # own state, then N, E, S, W
 MAX_WIDTH = 127
+
+
+def checkpoint_path(directory: Path, seed: int) -> Path:
+    """What a training run with this seed leaves in a model's directory until it is finished."""
+    return directory / f"checkpoint-{seed}.pt"
+
+
+def checkpoints(directory: Path) -> list[Path]:
+    """The checkpoints of an unfinished run."""
+    return sorted(directory.glob("checkpoint-*.pt"))
+
 
 # All that numpy and zipfile raise on bytes that are no archive of arrays.
 DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error)
@@ -108,7 +118,7 @@ def load_model(directory: Path) -> Model:
     try:
         about = json.loads(about_path.read_text(encoding="utf-8"))
     except OSError as error:
-        if (directory / CHECKPOINT).exists():
+        if checkpoints(directory):
             raise UsageError(
                 f"{directory}: holds an unfinished training run; finish it with `tilenca train ... --resume`"
             ) from error

@@ -4,30 +4,28 @@ import argparse
 import json
 import shlex
 import shutil
-import signal
 import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-from tilenca import paths
+from tilenca import fit, paths
 from tilenca.arguments import count, seed, whole
-from tilenca.drawings import load_drawings
-from tilenca.errors import InterruptedRunError, TilencaError, UsageError
-from tilenca.modelfile import CHECKPOINT, MAX_CHANNELS, MAX_WIDTH, Dimensions, Model
-from tilenca.recipes import RECIPES, find_recipe
+from tilenca.curriculum import labels_of
+from tilenca.drawings import Drawings, load_training_task
+from tilenca.errors import InterruptedRunError, UsageError
+from tilenca.exam import aims_of, set_exam
+from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
+from tilenca.recipes import RECIPES, Recipe, find_recipe
+from tilenca.sizes import Sizes
+from tilenca.streams import warn
+from tilenca.variants import UNKNOWN, Known
 
 if TYPE_CHECKING:
-    from tilenca.training import StepReport, Trainer
+    from tilenca.seedrun import Job
 
-CHECKPOINT_EVERY_S = 45.0
+SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,11 +36,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[paths.DEFAULT_SHAPES],
         metavar="F",
-        help="shape files, one task",
+        help="shape files, one task; the first may say at what other sizes its drawings keep their class",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
-    parser.add_argument("--recipe", default="default", metavar="NAME", help=f"one of: {' '.join(RECIPES)}")
+    parser.add_argument(
+        "--recipe",
+        default="full",
+        metavar="NAME",
+        help=f"one of: {' '.join(RECIPES)} (full; quick is for trying out drawings)",
+    )
     parser.add_argument("--seed", type=seed, default=1, metavar="N", help="same seed, same model (default 1)")
+    parser.add_argument(
+        "--seeds", type=whole(1, 64), metavar="K", help="train seeds N to N+K-1, keep the best (the recipe's)"
+    )
+    parser.add_argument(
+        "--jobs", type=whole(1, 64), metavar="J", help="how many of them at once (one for each processor)"
+    )
     parser.add_argument("--iterations", type=count, metavar="N", help="instead of the recipe's")
     parser.add_argument(
         "--state",
@@ -52,71 +61,127 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="channels of the state (default 21)",
     )
     parser.add_argument(
-        "--hidden", type=whole(1, MAX_WIDTH), default=40, metavar="H", help="width of both hidden layers (40)"
+        "--hidden", type=whole(1, MAX_WIDTH), metavar="H", help="width of both hidden layers (the recipe's)"
     )
     parser.add_argument("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
     parser.add_argument(
         "--validation-runs", type=count, metavar="N", help="runs per drawing, instead of the recipe's"
     )
     parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
-    parser.add_argument("--force", action="store_true", help="replace the model in DIR")
+    parser.add_argument(
+        "--force", action="store_true", help="replace the model in DIR, unless it is the better one"
+    )
     parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
 
 
-def run(args: argparse.Namespace) -> int:
-    """Trains, validates, quantises, writes."""
-    started = time.monotonic()
-    dimensions = Dimensions(args.state, args.hidden, args.hidden)
-    drawings = load_drawings(args.shapes, dimensions.max_classes)
-    recipe = find_recipe(args.recipe)
-    if args.iterations is not None:
-        recipe = replace(recipe, iterations=args.iterations)
-    validation_runs = recipe.validation_runs if args.validation_runs is None else args.validation_runs
-    _check_out(args)
-    torch = _import_torch(args.device)
+@dataclass(frozen=True)
+class Plan:
+    """What the arguments ask for.
 
-    from tilenca.quantise import quantise
-    from tilenca.tensors import IntegerEngine
-    from tilenca.training import Config, Trainer
+    Attributes:
+        task: the drawings of the files, with the model's labels.
+        sizes: of the task.
+        recipe: with the arguments' changes.
+        dimensions: of the network.
+        seeds: to train.
+        validation_runs: of each drawing in the final measurement.
+    """
+
+    task: Drawings
+    sizes: Sizes
+    recipe: Recipe
+    dimensions: Dimensions
+    seeds: tuple[int, ...]
+    validation_runs: int
+
+
+def run(args: argparse.Namespace) -> int:
+    """Trains, measures, quantises, writes."""
+    started = time.monotonic()
+    plan = _plan(args)
+    _check_out(args, plan)
+    _check_device(args.device)
+    _announce(plan)
+
+    from tilenca.keeping import Result, keep
+    from tilenca.seedrun import Job, make_trainer, model_of, train_side_by_side
+    from tilenca.simulate import FastEngine, processors
+    from tilenca.training import Config
+    from tilenca.trainview import show_training
     from tilenca.validation import validate
 
-    torch.set_num_threads(1)  # matrices this small gain nothing from a second thread
-    config = Config(recipe, dimensions, args.seed, drawings.labels, drawings.sources)
-    trainer = Trainer(config, drawings, torch.device(args.device))
-    if args.resume:
-        trainer.load(args.out / CHECKPOINT)
-    _train(trainer, args)
-
-    made = {
-        "command": _command(args),
-        "commit": _commit(),
-        "recipe_name": args.recipe,
-        **config.as_json(),
-    }
-    model, cut = quantise(dimensions, drawings.labels, trainer.net.arrays(), made)
-    say = Console(stderr=True).print
-    engine = IntegerEngine(model)
+    configs = [
+        Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources) for n in plan.seeds
+    ]
+    at_once = min(args.jobs or processors(), len(configs))
+    threads = max(1, processors() // at_once)
+    jobs = [
+        Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
+    ]
+    made = {"command": _command(args), "commit": _commit(), "recipe_name": args.recipe}
     try:
-        metrics = validate(
-            engine, drawings, validation_runs, args.seed, lambda what: say(f"measuring {what}")
-        )
+        with show_training(plan.seeds, plan.recipe.iterations) as tell:
+            train_side_by_side(jobs, at_once, tell)
+        job = _best(jobs)
+        trainer = make_trainer(replace(job, resume=True))
+        model, cut = model_of(trainer, {**made, **job.config.as_json()})
+        exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), args.seed)
+        metrics = validate(FastEngine(model), exam, plan.validation_runs, args.seed, warn)
+    except InterruptedRunError as error:
+        raise _interrupted(args, str(error)) from None
     except KeyboardInterrupt:
         raise _interrupted(args, "while measuring the trained model") from None
-    metrics["weights_cut"] = cut
-    _write(args.out, model, metrics, trainer.history)
-    _report(args, model, metrics, time.monotonic() - started)
+    metrics |= {"weights_cut": cut, "iterations": trainer.iteration, "ended_early": trainer.ended}
+    where = keep(args.out, Result(model, metrics, trainer.history, trainer.checks))
+    for path in checkpoints(args.out):
+        path.unlink()
+    _report(args, where, metrics, time.monotonic() - started)
     return 0
 
 
-def _check_out(args: argparse.Namespace) -> None:
+def _plan(args: argparse.Namespace) -> Plan:
+    recipe = find_recipe(args.recipe)
+    if args.iterations is not None:
+        recipe = replace(recipe, iterations=args.iterations)
+    hidden = args.hidden or recipe.hidden
+    dimensions = Dimensions(args.state, hidden, hidden)
+    task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
+    labels = labels_of(task, recipe, dimensions.max_classes)
+    seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
+    runs = args.validation_runs or recipe.validation_runs
+    return Plan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
+
+
+def _announce(plan: Plan) -> None:
+    """Says what will be trained, whether tiles can run it, and what nobody could tell apart."""
+    warn(str(fit.check(plan.dimensions, len(plan.task.labels))))
+    if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
+        warn(
+            f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
+            "tiles would learn to say that they do not know"
+        )
+    if plan.recipe.damaged:
+        known = Known((shape.label, shape.rows) for shape in plan.task.shapes)
+        doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
+        if doubts:
+            warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    warn(
+        f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
+        f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "
+        "a checkpoint"
+    )
+
+
+def _check_out(args: argparse.Namespace, plan: Plan) -> None:
+    unfinished = bool(checkpoints(args.out))
     if (args.out / "model.json").exists() and not (args.resume or args.force):
         raise UsageError(f"{args.out}: holds a model already; give another --out, or --force to replace it")
-    if (args.out / CHECKPOINT).exists() and not (args.resume or args.force):
+    if unfinished and not (args.resume or args.force):
         raise UsageError(
             f"{args.out}: holds an unfinished run; add --resume to continue it, --force to start anew"
         )
-    if args.resume and not (args.out / CHECKPOINT).exists():
-        raise UsageError(f"{args.out}: no {CHECKPOINT} to resume; train without --resume")
+    if args.resume and not any(checkpoint_path(args.out, number).exists() for number in plan.seeds):
+        raise UsageError(f"{args.out}: no checkpoint of this run to resume; train without --resume")
     try:
         args.out.mkdir(parents=True, exist_ok=True)
         probe = args.out / ".write-probe"
@@ -126,7 +191,7 @@ def _check_out(args: argparse.Namespace) -> None:
         raise UsageError(f"{args.out}: cannot write there ({error.strerror}); give another --out") from error
 
 
-def _import_torch(device: str) -> Any:
+def _check_device(device: str) -> None:
     try:
         import torch
     except ImportError as error:
@@ -135,80 +200,28 @@ def _import_torch(device: str) -> Any:
         raise UsageError(f"--device {device}: use cpu or cuda")
     if device == "cuda" and not torch.cuda.is_available():
         raise UsageError("--device cuda: PyTorch finds no CUDA device here; use --device cpu")
-    return torch
 
 
-def _train(trainer: "Trainer", args: argparse.Namespace) -> None:
-    """Trains to the end; when interrupted raises, with everything done so far in the checkpoint."""
-    checkpoint = args.out / CHECKPOINT
-    saved = time.monotonic()
-    with _interruptible() as interrupted, _progress(trainer) as show:
-        while trainer.iteration < trainer.config.recipe.iterations:
-            show(trainer.step())
-            if interrupted() or time.monotonic() - saved > CHECKPOINT_EVERY_S:
-                trainer.save(checkpoint)
-                saved = time.monotonic()
-            if interrupted():
-                break
-    if trainer.iteration < trainer.config.recipe.iterations:
-        raise _interrupted(args, f"at iteration {trainer.iteration}")
-    trainer.save(checkpoint)  # measuring takes a while, and can be interrupted too
+def _best(jobs: "list[Job]") -> "Job":
+    """The trained job whose model falls short of its targets least."""
+    from tilenca.seedrun import make_trainer, model_of
+    from tilenca.simulate import FastEngine
+    from tilenca.validation import Examiner
+
+    if len(jobs) == 1:
+        return jobs[0]
+    shortfalls = []
+    for job in jobs:
+        model, _ = model_of(make_trainer(replace(job, resume=True)), {})
+        exam = set_exam(job.task, job.sizes, model.labels, aims_of(job.config.recipe), job.config.seed)
+        rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, jobs[0].config.seed).short_rows()
+        shortfalls.append(sum(row.shortfall for row in rows))
+        warn(f"seed {job.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
+    return jobs[shortfalls.index(min(shortfalls))]
 
 
 def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
     return InterruptedRunError(f"interrupted {where}; continue with: {_command(args)} --resume")
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C waits for the end of the step, so that what is saved is whole; a second one does not."""
-    caught: list[int] = []
-
-    def note(number: int, _frame: object) -> None:
-        caught.append(number)
-        signal.signal(number, signal.default_int_handler)
-
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield lambda: bool(caught)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
-@contextmanager
-def _progress(trainer: "Trainer") -> Iterator[Callable[["StepReport"], None]]:
-    """A progress bar on a terminal, a line now and then elsewhere; both on stderr."""
-    console = Console(stderr=True)
-    total = trainer.config.recipe.iterations
-    bar = Progress(
-        TextColumn("training"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total}  {task.fields[note]}"),
-        TimeRemainingColumn(),
-        console=console,
-        disable=not console.is_terminal,
-    )
-    print(
-        f"training {total - trainer.iteration} iterations on {len(trainer.drawings)} drawings of "
-        f"{len(trainer.drawings.labels)} classes; Ctrl-C keeps a checkpoint",
-        file=sys.stderr,
-        flush=True,
-    )
-    with bar:
-        task = bar.add_task("training", total=total, completed=trainer.iteration, note="")
-        begun, first = time.monotonic(), trainer.iteration
-
-        def show(step: "StepReport") -> None:
-            loss, agreement = trainer.recent()
-            rate = (step.iteration - first) / max(time.monotonic() - begun, 1e-9)
-            note = f"loss {loss:.4f}  agree {agreement:.3f}  {rate:.0f}/s"
-            bar.update(task, completed=step.iteration, note=note)
-            if not console.is_terminal and step.iteration % max(total // 10, 1) == 0:
-                left_s = (total - step.iteration) / rate
-                print(f"training {step.iteration}/{total}  {note}  {left_s:.0f} s left", file=sys.stderr)
-
-        yield show
 
 
 def _command(args: argparse.Namespace) -> str:
@@ -218,14 +231,15 @@ def _command(args: argparse.Namespace) -> str:
         full = path.resolve()
         return str(full.relative_to(paths.ROOT) if full.is_relative_to(paths.ROOT) else path)
 
+    recipe = find_recipe(args.recipe)
     words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
-    words += ["--iterations", str(args.iterations or find_recipe(args.recipe).iterations)]
-    for option, default in (("state", 21), ("hidden", 40), ("device", "cpu")):
+    words += ["--seeds", str(args.seeds or recipe.seeds)]
+    words += ["--iterations", str(args.iterations or recipe.iterations)]
+    words += ["--hidden", str(args.hidden or recipe.hidden)]
+    for option, default in (("state", 21), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) != default:
-            words += [f"--{option}", str(value)]
-    if args.validation_runs is not None:
-        words += ["--validation-runs", str(args.validation_runs)]
+            words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)
 
 
@@ -239,29 +253,11 @@ def _commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def _write(out: Path, model: Model, metrics: dict[str, Any], history: list[tuple[int, float, float]]) -> None:
-    from tilenca.card import render_card
-
-    try:
-        model.save(out)
-        (out / "metrics.json").write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
-        rows = [f"{iteration},{loss:.6f},{agreement:.4f}" for iteration, loss, agreement in history]
-        (out / "history.csv").write_text(
-            "\n".join(["iteration,loss,agreement", *rows]) + "\n", encoding="utf-8"
-        )
-        (out / "README.md").write_text(render_card(model, metrics), encoding="utf-8")
-        (out / CHECKPOINT).unlink(missing_ok=True)
-    except OSError as error:
-        raise TilencaError(
-            f"{out}: cannot write the model ({error.strerror}); free some space and --resume"
-        ) from error
-
-
-def _report(args: argparse.Namespace, model: Model, metrics: dict[str, Any], seconds: float) -> None:
+def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seconds: float) -> None:
     if args.json:
-        print(json.dumps({"model": str(args.out), "seconds": round(seconds, 1), "metrics": metrics}))
+        print(json.dumps({"model": str(where), "seconds": round(seconds, 1), "metrics": metrics}))
         return
-    print(f"model {model.model_id:04X} in {args.out}, {seconds:.0f} s")
-    for schedule, files in metrics["agreement"].items():
-        for file, row in files.items():
-            print(f"  {file:20} {schedule:6}  @10 {row['10']:.3f}  @30 {row['30']:.3f}  @60 {row['60']:.3f}")
+    missed = [row for row in metrics["rows"] if not row["holds"]]
+    print(f"model in {where}, {seconds:.0f} s; {metrics['targets_held']} targets held")
+    for row in missed:
+        print(f"  missed: {row['name']}, @{row['steps']}: {row['share']:.4f}, wanted {row['target']}")

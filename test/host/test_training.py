@@ -14,13 +14,18 @@ import pytest
 import torch
 
 from tilenca import cli, paths
-from tilenca.drawings import load_drawings
+from tilenca.curriculum import Curriculum, labels_of
+from tilenca.drawings import load_drawings, load_training_task
 from tilenca.errors import TilencaError, UsageError
 from tilenca.modelfile import Dimensions, load_model
 from tilenca.pool import Pools
-from tilenca.recipes import RECIPES
+from tilenca.recipes import RECIPES, Recipe
+from tilenca.seedrun import HOLDS_TO_END, Job, make_trainer, train_side_by_side
+from tilenca.seedrun import train as train_one
 from tilenca.training import Config, Trainer
+from tilenca.validation import TARGETS, Target
 
+SMOKE = RECIPES["smoke"]
 TWO_SHAPES = (
     '[[shape]]\nlabel = "1"\ngrid = """\n#\n#\n#\n"""\n[[shape]]\nlabel = "7"\ngrid = """\n##\n.#\n.#\n"""\n'
 )
@@ -61,9 +66,14 @@ def train(shapes: Path, out: Path, *more: str) -> int:
 
 
 def trainer(seed: int = 1) -> Trainer:
-    drawings = load_drawings([paths.DEFAULT_SHAPES])
-    config = Config(RECIPES["smoke"], Dimensions(), seed, drawings.labels, drawings.sources)
-    return Trainer(config, drawings, torch.device("cpu"))
+    return make_trainer(job_of([paths.DEFAULT_SHAPES], paths.BUILD, seed))
+
+
+def job_of(files: list[Path], out: Path, seed: int = 5, hidden: int = 12, recipe: Recipe = SMOKE) -> Job:
+    task, sizes = load_training_task(files, recipe.stretch, 20)
+    task = replace(task, labels=labels_of(task, recipe, 20))
+    config = Config(recipe, Dimensions(21, hidden, hidden), seed, task.labels, task.sources)
+    return Job(config, task, sizes, "cpu", out, resume=False)
 
 
 def test_the_same_seed_gives_the_same_bytes_and_json_names_them(
@@ -88,34 +98,55 @@ def test_another_seed_gives_another_model() -> None:
 def test_a_resumed_run_ends_in_the_bytes_of_an_uninterrupted_one(
     shapes: Path, model: Path, tmp_path: Path
 ) -> None:
-    drawings = load_drawings([shapes])
-    config = Config(RECIPES["smoke"], Dimensions(21, 12, 12), 5, drawings.labels, drawings.sources)
-    first = Trainer(config, drawings, torch.device("cpu"))
+    job = job_of([shapes], tmp_path)
+    first = make_trainer(job)
     for _ in range(17):
         first.step()
-    first.save(tmp_path / "checkpoint.pt")
+    first.save(job.checkpoint)
     assert train(shapes, tmp_path, "--resume") == 0
     for name in ("weights.npz", "metrics.json", "history.csv"):
         assert (tmp_path / name).read_bytes() == (model / name).read_bytes(), name
-    assert not (tmp_path / "checkpoint.pt").exists()
+    assert not job.checkpoint.exists()
 
 
 def test_ctrl_c_saves_a_checkpoint_says_how_to_go_on_and_exits_130(shapes: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = ["train", "--shapes", shapes, "--out", out, "--recipe", "smoke", "--iterations", "1000000"]
+    words = ["train", "--shapes", shapes, "--out", out, "--recipe", "smoke", "--iterations", "1000"]
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "tilenca.cli", *map(str, words)], stderr=subprocess.PIPE, text=True
     )
     assert process.stderr is not None
-    # Training announces itself once its signal handler stands.
-    first = process.stderr.readline()
+    # The first measurement is told once the signal handler stands.
+    first = ""
+    while "seed 1:" not in first and process.poll() is None:
+        first = process.stderr.readline()
     os.kill(process.pid, signal.SIGINT)
     _, rest = process.communicate(timeout=60)
     assert process.returncode == 130, first + rest
     assert "continue with: tilenca train" in rest
     assert "--resume" in rest
-    assert (out / "checkpoint.pt").exists()
+    assert (out / "checkpoint-1.pt").exists()
     assert not (out / "model.json").exists()
+
+
+def test_ctrl_c_ends_seeds_side_by_side_each_with_its_checkpoint(shapes: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["train", "--shapes", shapes, "--out", out, "--recipe", "smoke", "--iterations", "1000"]
+    process = subprocess.Popen(
+        [sys.executable, "-u", "-m", "tilenca.cli", *map(str, words), "--seeds", "2", "--jobs", "2"],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    told: set[str] = set()
+    while len(told) < 2 and process.poll() is None:
+        line = process.stderr.readline()
+        told |= {line[:7]} if line.startswith("seed ") else set()
+    os.kill(process.pid, signal.SIGINT)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 130, rest
+    assert "--resume" in rest
+    assert sorted(path.name for path in out.glob("*.pt")) == ["checkpoint-1.pt", "checkpoint-2.pt"]
 
 
 def test_ctrl_c_while_measuring_keeps_what_was_trained(
@@ -136,23 +167,51 @@ def test_ctrl_c_while_measuring_keeps_what_was_trained(
     assert (tmp_path / "weights.npz").read_bytes() == (model / "weights.npz").read_bytes()
 
 
+def test_seeds_side_by_side_are_those_trained_alone_and_the_better_one_is_kept(
+    shapes: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train(shapes, tmp_path / "both", "--seeds", "2", "--jobs", "2") == 0
+    said = capsys.readouterr().err
+    assert "seed 5: short of its targets by" in said
+    assert "seed 6: short of its targets by" in said
+    assert train(shapes, tmp_path / "six", "--seed", "6") == 0
+    alone = [(model / "weights.npz").read_bytes(), (tmp_path / "six" / "weights.npz").read_bytes()]
+    assert (tmp_path / "both" / "weights.npz").read_bytes() in alone
+    assert not list((tmp_path / "both").glob("checkpoint*"))
+
+
+def test_a_failure_in_one_of_the_processes_is_told(shapes: Path, tmp_path: Path) -> None:
+    jobs = [replace(job_of([shapes], tmp_path, seed), resume=True) for seed in (1, 2)]
+    jobs[1].checkpoint.write_bytes(b"damaged")
+    with pytest.raises(TilencaError, match=r"seed 2: .*checkpoint-2\.pt: damaged checkpoint"):
+        train_side_by_side(jobs, 2, lambda _: None)
+    assert make_trainer(jobs[0]).done, "the other seed went on to its end"
+
+
+def test_training_ends_early_once_all_targets_held_several_times(
+    shapes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tilenca.validation.TARGETS", dict.fromkeys(TARGETS, Target(0.0)))
+    recipe = replace(SMOKE, iterations=400, check_every=10)
+    trainer = train_one(job_of([shapes], tmp_path, recipe=recipe), lambda _: None)
+    assert trainer.ended
+    assert trainer.iteration == 10 * HOLDS_TO_END
+
+
 def test_a_model_says_how_it_was_made(model: Path) -> None:
     made = load_model(model).made
     assert (made["recipe_name"], made["seed"], made["recipe"]["iterations"]) == ("smoke", 5, 40)
     assert made["sources"][0]["file"] == "two.toml"
+    assert load_model(model).labels == ("1", "7", "-"), "tiles learn to say that they do not know"
     card = (model / "README.md").read_text()
     assert made["command"] in card
     assert "the tiles' own clocks" in card
 
 
 def test_two_drawings_are_told_apart_after_a_short_training(shapes: Path) -> None:
-    drawings = load_drawings([shapes])
-    recipe = replace(
-        RECIPES["smoke"], iterations=200, rounds=(8, 12), learning_rate=5e-3, pool=0, quiet_pool=0
-    )
-    recipe = replace(recipe, quiet_batch=0, clocks=0.0, lossy=0.0)
-    config = Config(recipe, Dimensions(8, 16, 16), 1, drawings.labels, drawings.sources)
-    learner = Trainer(config, drawings, torch.device("cpu"))
+    recipe = replace(SMOKE, iterations=200, rounds=(8, 12), learning_rate=5e-3, pool=0, quiet_pool=0)
+    recipe = replace(recipe, quiet_batch=0, clocks=0.0, lossy=0.0, damaged=0.0, unknown=0.0)
+    learner = make_trainer(job_of([shapes], paths.BUILD, 1, 16, recipe))
     agreements = [learner.step().agreement for _ in range(200)]
     assert np.mean(agreements[:20]) < 0.6
     assert np.mean(agreements[-50:]) > 0.8
@@ -179,7 +238,8 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
 
 def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
     drawings = load_drawings([paths.DEFAULT_SHAPES])
-    pools = Pools(RECIPES["smoke"], drawings, 21, np.random.default_rng(1))
+    even = Curriculum(drawings, np.full(len(drawings), 1 / len(drawings)), np.ones(len(drawings), np.bool_))
+    pools = Pools(SMOKE, even, 21, np.random.default_rng(1))
     four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
     kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])
     for _ in range(200):
@@ -199,7 +259,7 @@ Refusal = Callable[[Path, Path], list[str]]
 REFUSALS: list[tuple[str, Refusal]] = [
     ("holds a model already", lambda shapes, full: ["--shapes", str(shapes), "--out", str(full)]),
     (
-        "no checkpoint.pt to resume",
+        "no checkpoint of this run to resume",
         lambda shapes, full: ["--shapes", str(shapes), "--out", str(full), "--resume"],
     ),
     ("no recipe 'fast'", lambda shapes, full: ["--shapes", str(shapes), "--out", "x", "--recipe", "fast"]),

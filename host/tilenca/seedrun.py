@@ -1,0 +1,215 @@
+"""One seed's training from start, or checkpoint, to end; alone or beside others in processes of their own."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from tilenca.curriculum import build
+from tilenca.drawings import Drawings
+from tilenca.errors import InterruptedRunError, TilencaError
+from tilenca.exam import Exam, aims_of, set_exam
+from tilenca.modelfile import Model, checkpoint_path
+from tilenca.quantise import quantise
+from tilenca.rollout import use_threads
+from tilenca.simulate import FastEngine
+from tilenca.sizes import Sizes
+from tilenca.training import Config, Trainer
+from tilenca.validation import Examiner
+
+CHECKPOINT_EVERY_S = 45.0
+CHECK_RUNS = 10  # of each drawing in the measurements during training
+HOLDS_TO_END = 3  # of them in a row in which all targets must hold to end early
+ENDING = (signal.SIGINT, signal.SIGTERM)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one process trains.
+
+    Attributes:
+        config: of the run; its labels are those of the curriculum.
+        task: the drawings of the files.
+        sizes: of the task.
+        device: `cpu` or `cuda`.
+        out: where checkpoints go.
+        resume: whether to go on from a checkpoint.
+        threads: how many processors it may use; the result does not depend on it.
+    """
+
+    config: Config
+    task: Drawings
+    sizes: Sizes
+    device: str
+    out: Path
+    resume: bool
+    threads: int = 1
+
+    @property
+    def checkpoint(self) -> Path:
+        """The file that a run resumes from."""
+        return checkpoint_path(self.out, self.config.seed)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a run tells now and then.
+
+    Attributes:
+        seed: whose it is.
+        iteration: how far it is.
+        loss, agreement: means over the last iterations.
+        check: share of targets held and shortfall in the last short measurement; None: none yet.
+    """
+
+    seed: int
+    iteration: int
+    loss: float
+    agreement: float
+    check: tuple[int, int, float] | None
+
+
+Tell = Callable[[Progress], None]
+
+
+def make_trainer(job: Job) -> Trainer:
+    """The trainer of a job, at its beginning or at its checkpoint."""
+    use_threads(job.threads)
+    config = job.config
+    curriculum = build(job.task, config.recipe, job.sizes, np.random.default_rng(config.seed))
+    trainer = Trainer(config, curriculum, torch.device(job.device))
+    if job.resume and job.checkpoint.exists():
+        trainer.load(job.checkpoint)
+    return trainer
+
+
+def model_of(trainer: Trainer, made: dict[str, object]) -> tuple[Model, int]:
+    """The integer model of what was trained so far, and how many weights had to be cut."""
+    return quantise(trainer.config.dimensions, trainer.config.labels, trainer.arrays(), made)
+
+
+def train(job: Job, tell: Tell) -> Trainer:
+    """Trains to the end.
+
+    Raises:
+        InterruptedRunError: Ctrl-C; everything done so far is in the checkpoint.
+        TilencaError: training diverged, or the checkpoint is of no use.
+    """
+    with _interruptible() as interrupted:
+        trainer = make_trainer(job)
+        recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
+        check: tuple[int, int, float] | None = None
+        exam = set_exam(job.task, job.sizes, job.config.labels, aims_of(job.config.recipe), job.config.seed)
+        while not trainer.done:
+            trainer.step()
+            if recipe.check_every and trainer.iteration % recipe.check_every == 0:
+                check = _check(trainer, exam)
+            if interrupted() or time.monotonic() - saved > CHECKPOINT_EVERY_S:
+                trainer.save(job.checkpoint)
+                saved = time.monotonic()
+            if interrupted():
+                raise InterruptedRunError(f"at iteration {trainer.iteration}")
+            if time.monotonic() - told > 0.2 or trainer.done:
+                tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
+                told = time.monotonic()
+        trainer.save(job.checkpoint)  # measuring takes a while, and can be interrupted too
+        return trainer
+
+
+def _check(trainer: Trainer, exam: Exam) -> tuple[int, int, float]:
+    """A short measurement; ends the training when all targets held several times in a row."""
+    model, _ = model_of(trainer, {})
+    rows = list(Examiner(FastEngine(model), exam, CHECK_RUNS, trainer.config.seed).short_rows())
+    shortfall = sum(row.shortfall for row in rows)
+    trainer.checks.append((trainer.iteration, shortfall, {row.key: row.share for row in rows}))
+    last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
+    trainer.ended = len(last) == HOLDS_TO_END and not any(last)
+    asked = [row for row in rows if row.target is not None]
+    return sum(row.holds for row in asked), len(asked), shortfall
+
+
+def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> None:
+    """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
+
+    Raises:
+        InterruptedRunError: Ctrl-C; every run has its checkpoint.
+        TilencaError: a run failed; the others went on to their end.
+    """
+    if at_once == 1 or len(jobs) == 1:
+        for job in jobs:
+            train(job, tell)
+        return
+    context = multiprocessing.get_context("spawn")
+    waiting, failures = list(jobs), list[str]()
+    running: dict[Connection, SpawnProcess] = {}
+    with _interruptible() as interrupted:
+        while waiting or running:
+            while waiting and len(running) < at_once and not interrupted():
+                job = waiting.pop(0)
+                ours, theirs = context.Pipe(duplex=False)
+                process = context.Process(target=_in_process, args=(job, theirs), daemon=True)
+                process.start()
+                theirs.close()
+                running[ours] = process
+            for connection in wait(list(running), timeout=0.5):
+                assert isinstance(connection, Connection)
+                try:
+                    news = connection.recv()
+                except EOFError:
+                    process = running.pop(connection)
+                    process.join()
+                    if process.exitcode and not interrupted():
+                        failures.append(f"a training process ended with {process.exitcode}")
+                    continue
+                if isinstance(news, Progress):
+                    tell(news)
+                else:
+                    failures.append(news)
+            if interrupted():
+                waiting.clear()
+                for process in running.values():
+                    if process.pid is not None and process.is_alive():
+                        os.kill(process.pid, signal.SIGTERM)
+        if interrupted():
+            raise InterruptedRunError("while training")
+    if failures:
+        raise TilencaError("; ".join(failures))
+
+
+def _in_process(job: Job, connection: "Connection") -> None:
+    """The body of a process: progress goes through the connection, and so does a failure's text."""
+    try:
+        train(job, connection.send)
+    except InterruptedRunError:
+        pass
+    except (TilencaError, OSError) as error:
+        connection.send(f"seed {job.config.seed}: {error}")
+    finally:
+        connection.close()
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Ctrl-C waits for the end of the step, so that what is saved is whole; a second one does not."""
+    caught: list[int] = []
+
+    def note(number: int, _frame: object) -> None:
+        caught.append(number)
+        if number == signal.SIGINT:
+            signal.signal(number, signal.default_int_handler)
+
+    before = {number: signal.signal(number, note) for number in ENDING}
+    try:
+        yield lambda: bool(caught)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
