@@ -122,7 +122,7 @@ def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Si
     if trained:
         yield Paper("all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
-    most = max(aimed.trained, default=(0, 0), key=lambda size: size[0] * size[1])
+    most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     for path in sizes.drawn:
         drawings = load_drawings([path], labels=task.labels)
         yield Paper(f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)

@@ -40,6 +40,7 @@ class Recipe:
         latency: least and most delay of a message, in periods.
         lossy: share of samples that lose messages; a lost one reads as zero.
         max_loss: largest share of messages lost.
+        longest_loss: most rounds that the loss of a neighbour's messages lasts.
         unheard: share of samples in which what a tile sends is now and then heard by nobody; its neighbours
             go on with what they heard before.
         max_unheard: largest share of messages that nobody hears.
@@ -80,6 +81,7 @@ class Recipe:
     latency: tuple[float, float] = (0.1, 0.9)
     lossy: float = 0.0
     max_loss: float = 0.0
+    longest_loss: int = 1
     unheard: float = 0.0
     max_unheard: float = 0.0
     stretch: float = 1.0
@@ -96,7 +98,7 @@ class Recipe:
 # and a shape that is none of the task's must not be taken for one.
 FULL = Recipe(
     hidden=96,
-    iterations=60_000,
+    iterations=45_000,
     batch=32,
     rounds=(14, 34),
     learning_rate=1e-3,
@@ -116,6 +118,7 @@ FULL = Recipe(
     clocks=0.5,
     lossy=0.5,
     max_loss=0.3,
+    longest_loss=10,
     unheard=0.5,
     max_unheard=0.7,
     stretch=10.0,

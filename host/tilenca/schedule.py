@@ -109,8 +109,9 @@ def draw_schedule(
         neighbours[asleep] = cells
     if recipe.lossy > 0:
         loss = random.uniform(0, recipe.max_loss, samples) * (random.random(samples) < recipe.lossy)
-        lost = random.random(neighbours.shape, dtype=np.float32) < loss[batch.sample][who, None]
-        neighbours[lost] = cells
+        lasts = random.integers(1, recipe.longest_loss + 1, samples)
+        fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
+        neighbours[fate < loss[batch.sample][who, None]] = cells
     if recipe.unheard > 0:
         unheard = random.uniform(0, recipe.max_unheard, samples) * (random.random(samples) < recipe.unheard)
         some = np.flatnonzero(unheard[batch.sample])

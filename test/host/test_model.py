@@ -116,7 +116,7 @@ def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latenc
 
 
 def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
-    recipe = replace(RECIPES["full"], lossy=1.0, max_loss=1.0)
+    recipe = replace(RECIPES["full"], lossy=1.0, max_loss=1.0, longest_loss=1)
     batch = drawings.batch(np.arange(len(drawings)))
     lives = np.full(len(drawings), 50)
     schedule = draw_schedule(
@@ -127,6 +127,24 @@ def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
     assert (neighbours[lost] == len(batch.sample)).all()
     asked = fires[:, :, None] & (batch.neighbours < len(batch.sample))
     assert 0.2 < lost.sum() / asked.sum() < 0.8
+
+
+def test_a_loss_may_last(drawings: Drawings) -> None:
+    recipe = replace(RECIPES["full"], lossy=1.0, max_loss=1.0, fire_rate=(1.0, 1.0), clocks=0.0)
+    batch = drawings.batch(np.array([8]))
+
+    def changes(longest: int) -> float:
+        """How often a neighbour is heard after it was not, or the other way round."""
+        some = replace(recipe, longest_loss=longest)
+        random = np.random.default_rng(5)
+        schedules = [
+            draw_schedule(some, batch, np.array([60]), random, np.array([False]), nobody(batch))
+            for _ in range(30)
+        ]
+        heard = [schedule.by_cell()[2] < len(batch.sample) for schedule in schedules]
+        return float(np.mean([np.diff(one.astype(np.int8), axis=0) != 0 for one in heard]))
+
+    assert changes(12) < 0.5 * changes(1)
 
 
 def test_nobody_updates_before_being_switched_on_or_after_the_end_of_its_life(drawings: Drawings) -> None:
