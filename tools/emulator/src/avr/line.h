@@ -1,6 +1,8 @@
 // The level of one wire over time, as an input sees it: what was, and what is already on its way.
 #pragma once
 
+#include "avr/archive.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,6 +14,7 @@ class Line {
     struct Edge {
         uint64_t cycle;
         bool level;
+        void state(Archive& archive) { archive(cycle, level); }
     };
 
     // From `cycle` on the wire has this level; whatever was to come at or after `cycle` does not happen.
@@ -29,6 +32,7 @@ class Line {
     void forget_before(uint64_t cycle);
 
     size_t edges() const { return edges_.size() - first_; }
+    void state(Archive& archive);
 
   private:
     std::vector<Edge> edges_; // alternating levels, rising times, from index first_ on
