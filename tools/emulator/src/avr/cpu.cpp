@@ -266,7 +266,7 @@ void Cpu::state(Archive& archive) {
         at = program + word;
         set_stack_low(stack_low);
         trap_hit = halted = false;
-        yields = true; // the clock divisor may be another one
+        yields = false;
     }
 }
 
