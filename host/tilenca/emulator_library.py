@@ -85,7 +85,7 @@ _SIGNATURES: dict[str, tuple[type | None, list[type]]] = {
     "tile_set_status": (None, [*_TILE, c_uint]),
     "tile_set_breakpoint": (c_int, [*_TILE, c_uint32, c_int]),
     "tile_halt": (None, _TILE),
-    "tile_step": (None, _TILE),
+    "tile_step": (c_int, _TILE),
     "tile_resume": (None, _TILE),
     "tile_set_mark": (c_int, [*_TILE, c_uint32, c_int]),
     "tile_marks": (c_size_t, [*_TILE, POINTER(c_uint32), POINTER(c_uint64), c_size_t]),

@@ -1,6 +1,6 @@
 """One emulated tile, as eyes, fingers, cables and a debugger reach it."""
 
-from ctypes import c_char, c_double, c_uint, c_uint8, c_uint32, c_uint64
+from ctypes import byref, c_char, c_double, c_uint, c_uint8, c_uint32, c_uint64
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Protocol
@@ -318,7 +318,7 @@ class EmulatedTile:
             receiving: the wire that arrives instead of the one that leaves.
         """
         port, bit = c_char(), c_uint()
-        library().tilenca_side_pin(side, receiving, port, bit)
+        library().tilenca_side_pin(side, receiving, byref(port), byref(bit))
         return WireTap(lambda: self._array.handle, self.index, port.value.decode(), bit.value, baud)
 
     # --- for debuggers; see tilenca.emulator_gdb ---
@@ -337,9 +337,15 @@ class EmulatedTile:
         """Halts it where it stands."""
         library().tilenca_tile_halt(self._array.handle, self.index)
 
-    def step(self) -> None:
-        """Executes one instruction, or enters one interrupt; the tile is halted afterwards."""
-        library().tilenca_tile_step(self._array.handle, self.index)
+    def step(self) -> bool:
+        """Executes one instruction, or enters one interrupt; the tile is halted afterwards.
+
+        The other tiles catch up.
+
+        Returns:
+            False if it sleeps on after a second, or another tile has halted first.
+        """
+        return bool(library().tilenca_tile_step(self._array.handle, self.index))
 
     def resume(self) -> None:
         """Lets a halted tile go on with the next `Array.run`."""

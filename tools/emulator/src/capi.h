@@ -110,9 +110,10 @@ void tilenca_tile_set_pc(tilenca_array* array, unsigned tile, uint32_t address);
 unsigned tilenca_tile_status(tilenca_array* array, unsigned tile);
 void tilenca_tile_set_status(tilenca_array* array, unsigned tile, unsigned value);
 int tilenca_tile_set_breakpoint(tilenca_array* array, unsigned tile, uint32_t address, int set);
-// Halts the tile where it stands, or executes one instruction of a halted one, or lets it go on.
+// Halts the tile where it stands, or executes one instruction of a halted one, or lets it go on. A step
+// returns 0 if the tile sleeps on after a second, or another one has halted first.
 void tilenca_tile_halt(tilenca_array* array, unsigned tile);
-void tilenca_tile_step(tilenca_array* array, unsigned tile);
+int tilenca_tile_step(tilenca_array* array, unsigned tile);
 void tilenca_tile_resume(tilenca_array* array, unsigned tile);
 // Notes the cycle at which the instruction at an address begins, every time.
 int tilenca_tile_set_mark(tilenca_array* array, unsigned tile, uint32_t address, int set);

@@ -62,9 +62,25 @@ void tilenca_tile_halt(tilenca_array* array, unsigned tile) {
     chip_of(array, tile).cpu().halted = true;
 }
 
-void tilenca_tile_step(tilenca_array* array, unsigned tile) {
-    chip_of(array, tile).step_halted();
-    chip_of(array, tile).cpu().halted = true;
+// The others go on until they have caught up, so that nobody hears of what has not happened yet.
+int tilenca_tile_step(tilenca_array* array, unsigned tile) {
+    auto& chip = chip_of(array, tile);
+    auto& cpu = chip.cpu();
+    if (chip.is_trapped()) {
+        chip.step_halted();
+        cpu.halted = true;
+        return 1;
+    }
+    const double patience = array->array.now() + tilenca::kTicksPerSecond;
+    cpu.halted = false;
+    cpu.halts_after_one = true;
+    while (!array->array.has_halted() && cpu.fault.empty() && array->array.now() < patience) {
+        array->array.run_for(tilenca::kQuantumTicks);
+    }
+    const bool stepped = cpu.halted;
+    cpu.halts_after_one = false;
+    cpu.halted = true;
+    return stepped;
 }
 
 void tilenca_tile_resume(tilenca_array* array, unsigned tile) {

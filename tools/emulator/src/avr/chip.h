@@ -67,7 +67,9 @@ class Chip : private Bus {
     // Notes the cycle at which the instruction at a word of flash begins.
     void set_mark(uint32_t word, bool set);
     std::vector<MarkPassed>& marks_passed() { return marks_passed_; }
-    // Executes one instruction of a halted core, or takes one interrupt.
+    // Whether the next instruction is under a trap.
+    bool is_trapped() const { return program_->traps().count(cpu_.pc()) != 0; }
+    // Executes the instruction before which the core has halted.
     void step_halted();
 
     // All that is not the same for every chip with this image; traps stay as they are.

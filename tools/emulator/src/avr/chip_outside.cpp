@@ -90,8 +90,8 @@ void Chip::lift_trap(uint32_t word, bool lifted) {
 }
 
 void Chip::step_halted() {
-    if (program_->traps().count(cpu_.pc()) == 0) {
-        cpu_.step();
+    if (!is_trapped()) {
+        cpu_.halted = false;
         return;
     }
     if (marks_.count(cpu_.pc()) != 0) {

@@ -220,6 +220,7 @@ void Cpu::run(uint64_t until) {
         const bool wanted = requests != 0 && interrupts_on;
         if (wanted && cycle > held_until) {
             take_interrupt();
+            halt_if_asked();
             continue; // an event can have fallen due meanwhile, and rank first
         }
         limit = std::min(until, next_event);
@@ -228,11 +229,12 @@ void Cpu::run(uint64_t until) {
             cycle = limit;
             continue;
         }
-        if (wanted) {
+        if (wanted || halts_after_one) {
             limit = std::min(limit, cycle + 1);
         }
         asleep = false;
         execute();
+        halt_if_asked();
     }
 }
 

@@ -78,12 +78,13 @@ struct Cpu {
     bool asleep = false;
     bool deeply = false; // asleep, and the clock of the peripherals stands
     bool sleep_enabled = false;
-    bool trap_hit = false;      // the instruction at hand is a trap that has not been looked at yet
-    bool yields = false;        // hands control back to whoever runs it, who clears this
-    uint32_t clock_divisor = 1; // of the system clock prescaler
-    bool halted = false;        // before a breakpoint; whoever debugs says when to go on
-    uint64_t instructions = 0;  // counted by single steps only
-    std::string fault;          // what stopped the core; empty: nothing
+    bool trap_hit = false;        // the instruction at hand is a trap that has not been looked at yet
+    bool yields = false;          // hands control back to whoever runs it, who clears this
+    uint32_t clock_divisor = 1;   // of the system clock prescaler
+    bool halts_after_one = false; // instruction, or interrupt taken
+    bool halted = false;          // before a breakpoint; whoever debugs says when to go on
+    uint64_t instructions = 0;    // counted by single steps only
+    std::string fault;            // what stopped the core; empty: nothing
 
     void use(const Program& program_image);
     void reset(uint32_t start_word);
@@ -114,6 +115,10 @@ struct Cpu {
     void take_interrupt();
     void set_stack_low(uint16_t low);
     void execute();
+    void halt_if_asked() {
+        halted = halted || halts_after_one;
+        halts_after_one = false;
+    }
 };
 
 } // namespace tilenca::avr
