@@ -143,7 +143,8 @@ def beside(pictures: Sequence[Picture], console: Console, width: int, height: in
 
 def verdict(emulation: Emulation) -> str:
     """One line: whether the tiles are right, and since when."""
-    name, count = emulation.shape.name, len(emulation.array)
+    name, standing = emulation.shape.name, [tile for tile in emulation.array if tile.powered]
+    count = len(standing)
     agreed_s = emulation.agreed_at_s()
     if agreed_s is not None:
         tiles = "the tile shows" if count == 1 else f"all {count} tiles show"
@@ -153,7 +154,7 @@ def verdict(emulation: Emulation) -> str:
         )
     wrong = [
         f"tile {tile.index + 1} {emulation.shown(tile) or 'nothing'}"
-        for tile in emulation.array
+        for tile in standing
         if emulation.shown(tile) != emulation.shape.label
     ]
     model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""

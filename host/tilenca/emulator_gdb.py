@@ -50,6 +50,11 @@ class GdbPort:
         """Whether a debugger is there."""
         return self._connection is not None
 
+    @property
+    def goes(self) -> bool:
+        """Whether the debugger has let the tile go on."""
+        return self._goes
+
     def wait(self) -> None:
         """Waits until a debugger is there."""
         self._accept()

@@ -317,9 +317,15 @@ class EmulatedTile:
             baud: bits per second; 0: as the program has set the USART of that pin, if it has one.
             receiving: the wire that arrives instead of the one that leaves.
         """
+        port, bit = self.side_pin(side, receiving)
+        return WireTap(lambda: self._array.handle, self.index, port, bit, baud)
+
+    @staticmethod
+    def side_pin(side: int, receiving: bool = False) -> tuple[str, int]:
+        """Port and bit of the pin that a side sends on, or receives on: ("H", 1) for the north side."""
         port, bit = c_char(), c_uint()
         library().tilenca_side_pin(side, receiving, byref(port), byref(bit))
-        return WireTap(lambda: self._array.handle, self.index, port.value.decode(), bit.value, baud)
+        return port.value.decode(), bit.value
 
     # --- for debuggers; see tilenca.emulator_gdb ---
 
