@@ -167,6 +167,11 @@ class EmulatedTile:
     def pc(self, address: int) -> None:
         library().tilenca_tile_set_pc(self._array.handle, self.index, address)
 
+    @property
+    def function(self) -> str:
+        """The function that the next instruction is in, or ""."""
+        return self._array.function_at(self.pc)
+
     def press_button(self, pressed: bool = True) -> None:
         """Holds the push button down, or lets it go."""
         library().tilenca_tile_press_button(self._array.handle, self.index, pressed)
@@ -318,6 +323,10 @@ class EmulatedTile:
             receiving: the wire that arrives instead of the one that leaves.
         """
         port, bit = self.side_pin(side, receiving)
+        return WireTap(lambda: self._array.handle, self.index, port, bit, baud)
+
+    def tap_pin(self, port: str, bit: int, baud: float = 0.0) -> WireTap:
+        """Like `tap`, on any pin."""
         return WireTap(lambda: self._array.handle, self.index, port, bit, baud)
 
     @staticmethod
