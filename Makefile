@@ -73,6 +73,7 @@ train: setup-train ## train a model of the digits into build/models/digits
 bench: setup-demo ## print exact sizes of the firmware and the speed of the emulation
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
+	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
 	@rm -rf .pio build/emulator build/simulator build/strict build/models

@@ -7,25 +7,13 @@ namespace tilenca {
 namespace {
 
 constexpr int kSpins = 2000;
+constexpr uint64_t kRound = uint64_t{1} << 32;
 
 // Leaves the other thread of the same core more of it.
 void relax() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();
 #endif
-}
-
-template <class Condition>
-void wait_for(const Condition& holds, const std::atomic<bool>& resting) {
-    for (int spins = 0; !holds(); spins++) {
-        if (spins < kSpins) {
-            relax();
-        } else if (resting.load(std::memory_order_relaxed)) {
-            std::this_thread::sleep_for(std::chrono::microseconds(200));
-        } else {
-            std::this_thread::yield();
-        }
-    }
 }
 
 } // namespace
@@ -43,36 +31,49 @@ Workers::~Workers() {
     }
 }
 
-void Workers::take_turns() {
-    for (unsigned i = next_.fetch_add(1); i < count_; i = next_.fetch_add(1)) {
-        (*work_)(i);
+bool Workers::take_turn() {
+    uint64_t ticket = ticket_.load(std::memory_order_acquire);
+    const auto index = static_cast<unsigned>(ticket);
+    // A round that has ended meanwhile has another ticket: then the exchange fails.
+    if (index >= count_.load(std::memory_order_acquire) ||
+        !ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel)) {
+        return index < count_.load(std::memory_order_relaxed);
     }
+    (*work_.load(std::memory_order_acquire))(index);
+    done_.fetch_add(1, std::memory_order_release);
+    return true;
 }
 
 void Workers::help() {
-    unsigned seen = 0;
-    for (;;) {
-        wait_for([&] { return round_.load(std::memory_order_acquire) != seen || ends_; }, resting_);
-        if (ends_) {
-            return;
+    for (int spins = 0; !ends_.load(std::memory_order_relaxed); spins++) {
+        if (take_turn()) {
+            spins = 0;
+        } else if (spins < kSpins) {
+            relax();
+        } else if (resting_.load(std::memory_order_relaxed)) {
+            std::this_thread::sleep_for(std::chrono::microseconds(200));
+        } else {
+            std::this_thread::yield();
         }
-        seen++;
-        take_turns();
-        finished_.fetch_add(1, std::memory_order_release);
     }
 }
 
 void Workers::share(unsigned count, const std::function<void(unsigned)>& work) {
     resting_ = false;
-    count_ = count;
+    done_ = 0;
+    count_ = 0; // so that nobody takes a ticket of the new round with the old work
+    ticket_ = (ticket_ / kRound + 1) * kRound;
     work_ = &work;
-    finished_ = 0;
-    next_ = 0;
-    round_.fetch_add(1, std::memory_order_release);
-    take_turns();
-    const auto all = static_cast<unsigned>(helpers_.size());
-    static const std::atomic<bool> never{false};
-    wait_for([&] { return finished_.load(std::memory_order_acquire) == all; }, never);
+    count_.store(count, std::memory_order_release);
+    while (take_turn()) {
+    }
+    for (int spins = 0; done_.load(std::memory_order_acquire) != count; spins++) {
+        if (spins < kSpins) {
+            relax();
+        } else {
+            std::this_thread::yield();
+        }
+    }
 }
 
 } // namespace tilenca

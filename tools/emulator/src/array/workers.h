@@ -1,10 +1,11 @@
 // Threads that share the tiles of one quantum among them, quantum after quantum.
 //
-// They wait for each other by spinning for a moment, since a quantum takes microseconds, and then by giving
-// way to others.
+// A quantum takes microseconds, so they look out for work all the time. Nobody waits for a thread that has
+// not begun with a tile: on a machine with other things to do, whoever runs does the work.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -19,21 +20,22 @@ class Workers {
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
 
-    unsigned threads() const { return static_cast<unsigned>(helpers_.size()) + 1; }
     // Calls `work` with 0 .. count - 1, each once, on all threads, and returns when all calls have.
     void share(unsigned count, const std::function<void(unsigned)>& work);
-    // Between calls of `share` helpers look out for work all the time; so let them rest.
+    // Until the next call of `share` the helpers need not look out for work so often.
     void rest() { resting_ = true; }
 
   private:
     void help();
-    void take_turns();
+    // Does one piece of work; false: there is none to be had.
+    bool take_turn();
 
     std::vector<std::thread> helpers_;
-    std::atomic<unsigned> round_{0}, next_{0}, finished_{0};
+    // The round in the upper half, the next number to be called with in the lower one.
+    std::atomic<uint64_t> ticket_{0};
+    std::atomic<unsigned> count_{0}, done_{0};
+    std::atomic<const std::function<void(unsigned)>*> work_{nullptr};
     std::atomic<bool> ends_{false}, resting_{true};
-    unsigned count_ = 0;
-    const std::function<void(unsigned)>* work_ = nullptr;
 };
 
 } // namespace tilenca
