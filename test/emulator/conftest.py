@@ -30,6 +30,15 @@ def library() -> Path:
     return LIBRARY
 
 
+def compile_differential(library: Path, directory: Path) -> Path:
+    """The program that runs our core and libsimavr side by side."""
+    program, source = directory / "differential", Path(__file__).parent / "differential.cpp"
+    search = ("-I", ROOT / "tools" / "emulator" / "src", "-I", ROOT / "firmware" / "include")
+    links = (library, f"-Wl,-rpath,{library.parent}", "-lsimavr", "-lelf")
+    run_tool("g++", "-std=c++17", "-O1", *search, source, "-o", program, *links)
+    return program
+
+
 @pytest.fixture
 def avr(tmp_path: Path) -> Compile:
     """Compiles C for the ATmega2560 and returns the ELF file."""

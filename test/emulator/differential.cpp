@@ -5,6 +5,7 @@
 //   differential program ELF COUNT      a program without its peripherals, instruction by instruction
 //   differential whole ELF MEGACYCLES   a program with its peripherals: what it says and what it leaves in
 //   EEPROM
+//   differential both ELF MEGACYCLES    tells what a program says on either
 //
 // Prints what was compared and exits 0, or prints the first disagreements and exits 1. Instructions that
 // reach into peripherals are left out: what those do is tested against the data sheet.
@@ -346,6 +347,14 @@ std::string run_theirs(const Image& image, uint64_t cycles, std::vector<uint8_t>
     return said;
 }
 
+int run_both(const char* path, uint64_t cycles) {
+    const Image image = load_image(path);
+    std::vector<uint8_t> eeprom;
+    const std::string ours = run_ours(image, cycles, &eeprom), theirs = run_theirs(image, cycles, &eeprom);
+    std::printf("ours: %s libsimavr: %s\n", ours.c_str(), theirs.c_str());
+    return 0;
+}
+
 int run_whole(const char* path, uint64_t cycles) {
     const Image image = load_image(path);
     std::vector<uint8_t> our_eeprom, their_eeprom;
@@ -407,10 +416,14 @@ int main(int argc, char** argv) {
     if (argc == 4 && std::strcmp(argv[1], "whole") == 0) {
         return run_whole(argv[2], std::strtoul(argv[3], nullptr, 10) * 1000000);
     }
+    if (argc == 4 && std::strcmp(argv[1], "both") == 0) {
+        return run_both(argv[2], std::strtoul(argv[3], nullptr, 10) * 1000000);
+    }
     if (argc == 4 && std::strcmp(argv[1], "program") == 0) {
         return run_program(argv[2], std::strtoul(argv[3], nullptr, 10));
     }
-    std::fprintf(stderr,
-                 "usage: differential random|stream COUNT SEED | program ELF COUNT | whole ELF MEGACYCLES\n");
+    std::fprintf(
+        stderr,
+        "usage: differential random|stream COUNT SEED | program ELF COUNT | whole|both ELF MEGACYCLES\n");
     return 2;
 }

@@ -3,20 +3,12 @@
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Compile, run_tool
-
-INCLUDES = ("-I", ROOT / "tools" / "emulator" / "src", "-I", ROOT / "firmware" / "include")
+from conftest import Compile, compile_differential, run_tool
 
 
 @pytest.fixture(scope="module")
 def differential(library: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    program = tmp_path_factory.mktemp("differential") / "differential"
-    source = Path(__file__).parent / "differential.cpp"
-    search = f"-Wl,-rpath,{library.parent}"
-    run_tool(
-        "g++", "-std=c++17", "-O1", *INCLUDES, source, "-o", program, library, search, "-lsimavr", "-lelf"
-    )
-    return program
+    return compile_differential(library, tmp_path_factory.mktemp("differential"))
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -336,3 +336,20 @@ def test_tasks_with_stacks_among_the_data_are_left_alone(avr: Compile) -> None:
     array = Array(avr(source))
     array.run(0.01)
     assert array[0].read_memory(0x1000, 1) == b"\x07"
+
+
+def test_a_tile_that_was_programmed_anew_has_another_image_s_data(avr: Compile) -> None:
+    code = """
+        boot_page_erase(PAGE); boot_spm_busy_wait(); boot_page_fill(PAGE, 0xBEEF);
+        boot_page_write(PAGE); boot_spm_busy_wait(); boot_rww_enable();
+        for (uint16_t n = 0; n < 2000; n++) asm volatile("push r1");
+        for (uint16_t n = 0; n < 2000; n++) asm volatile("pop r0");
+    """
+    source = (
+        BOOT.replace("CODE", code) + "volatile uint8_t data[7000]; uint8_t keep(void) { return data[0]; }"
+    )
+    places = ("-Wl,--section-start=.bootloader=0x3E000", "-Wl,--section-start=.table=0x8000")
+    array = Array(avr(source, "-Wno-unused", *places))
+    array.run(0.02)
+    assert array[0].stack.most_bytes > 2000
+    assert array[0].stack.floor == 0x200

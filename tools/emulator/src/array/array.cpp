@@ -182,7 +182,8 @@ std::string Array::fault(unsigned index) {
         return "";
     }
     const uint32_t address = 2 * cpu.pc();
-    const std::string function = image_.function_at(address);
+    const bool own = !tile(index).chip().has_changed_flash();
+    const std::string function = own ? image_.function_at(address) : "";
     char text[64];
     std::snprintf(text, sizeof text, "tile %u stopped at 0x%05X", index + 1, address);
     return text + (function.empty() ? "" : " in " + function) + ": " + cpu.fault;

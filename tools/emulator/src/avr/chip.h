@@ -46,6 +46,7 @@ class Chip : private Bus {
     void step() { cpu_.step(); }
 
     Cpu& cpu() { return cpu_; }
+    const Cpu& cpu() const { return cpu_; }
     Gpio& gpio() { return *gpio_; }
     Eeprom& eeprom() { return *eeprom_; }
     Adc& adc() { return *adc_; }
@@ -54,6 +55,8 @@ class Chip : private Bus {
     Fuses& fuses() { return fuses_; }
     Usart& usart(unsigned number) { return *usarts_[number]; }
     const uint8_t* flash() const { return program_->bytes(); }
+    // Whether it has programmed itself: then the image's symbols tell nothing any more.
+    bool has_changed_flash() const { return self_programming_->has_changed_flash(); }
     const Warnings& warnings() const { return warnings_; }
     // Changes the level of an input from `cycle` on; the pin has a line attached.
     void push_edge(PinId pin, uint64_t cycle, bool level);

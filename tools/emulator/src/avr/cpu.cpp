@@ -103,7 +103,7 @@ void Cpu::set_stack_low(uint16_t low) {
 
 void Cpu::set_stack_floor(uint16_t floor) {
     stack_floor = std::clamp<uint16_t>(floor, kSramStart, kDataBytes - 1);
-    set_stack_low(std::max(stack_low, stack_floor));
+    set_stack_low(std::max(stack_deepest, stack_floor));
 }
 
 // A stack that was put below the floor in one step is one of many, as in programs with tasks of their own.

@@ -66,14 +66,21 @@ void Tile::run_until(double end) {
     }
 }
 
+uint16_t Tile::stack_floor() const {
+    if (chip_.has_changed_flash()) {
+        return avr::kSramStart;
+    }
+    if (data_end_.heap_pointer == 0) {
+        return data_end_.fixed;
+    }
+    const uint8_t* const heap = chip_.cpu().data + data_end_.heap_pointer;
+    return std::max(data_end_.fixed, static_cast<uint16_t>(heap[0] | heap[1] << 8));
+}
+
 void Tile::execute_until(double end) {
     avr::Cpu& cpu = chip_.cpu();
-    if (data_end_.heap_pointer != 0) {
-        const auto heap = static_cast<uint16_t>(cpu.data[data_end_.heap_pointer] |
-                                                cpu.data[data_end_.heap_pointer + 1] << 8);
-        cpu.set_stack_floor(std::max(data_end_.fixed, heap));
-    } else if (cpu.stack_floor != data_end_.fixed) {
-        cpu.set_stack_floor(data_end_.fixed);
+    if (const uint16_t floor = stack_floor(); floor != cpu.stack_floor) {
+        cpu.set_stack_floor(floor);
     }
     chip_.run_until(clock_.to_cycle(end));
     while (cpu.yields) { // its program has changed the speed of its clock

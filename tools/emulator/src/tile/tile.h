@@ -61,6 +61,7 @@ class Tile {
 
   private:
     void execute_until(double end);
+    uint16_t stack_floor() const;
     bool lit(avr::PinId pin);
     void note_display();
 
