@@ -112,13 +112,10 @@ void Array::remove_tile(unsigned index) {
 // The time until which every tile sleeps; the present if one does not.
 double Array::idle_until() {
     double soonest = HUGE_VAL;
-    for (auto& tile : tiles_) {
-        soonest = std::min(soonest, std::max(now_, tile->wakes_at()));
+    for (const double until : sleeps_until_) {
+        soonest = std::min(soonest, std::max(now_, until));
         if (soonest <= now_) {
             return soonest;
-        }
-        if (tile->clock().drifts()) {
-            soonest = std::min(soonest, (std::floor(now_ / kDriftTicks) + 1) * kDriftTicks);
         }
     }
     for (const auto& wire : wires_) { // what is on its way wakes somebody up, perhaps
@@ -128,15 +125,30 @@ double Array::idle_until() {
 }
 
 void Array::run_tile(unsigned index, double end) {
+    bool has_mail = false;
     for (Wire* wire : into_[index]) {
-        wire->deliver();
+        has_mail = wire->deliver() || has_mail;
     }
-    tiles_[index]->run_until(end);
+    if (has_mail || sleeps_until_[index] < end) {
+        Tile& tile = *tiles_[index];
+        tile.run_until(end);
+        // A drifting clock tells the time of waking until its next step only.
+        const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
+        sleeps_until_[index] = tile.clock().drifts() ? std::min(tile.wakes_at(), step) : tile.wakes_at();
+    }
     for (Wire* wire : out_of_[index]) {
         if (wire->has_fault()) {
             wire->settle(end);
         }
     }
+}
+
+// Every tile is brought to the present; from here on anything may be done to it.
+void Array::catch_up() {
+    for (auto& tile : tiles_) {
+        tile->run_until(now_);
+    }
+    sleeps_until_.assign(tiles_.size(), 0);
 }
 
 void Array::run_quantum(double end) {
@@ -158,14 +170,13 @@ bool Array::has_halted() const {
 void Array::run_for(double ticks) {
     asked_for_ += ticks;
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
-    for (auto& tile : tiles_) {
-        tile->run_until(now_); // one that was halted catches up
-    }
+    catch_up(); // one that was halted has to
     while (now_ < end && !has_halted()) {
         const double busy_from = std::floor(idle_until() / kQuantumTicks) * kQuantumTicks;
         now_ = std::min(end, busy_from + kQuantumTicks);
         run_quantum(now_);
     }
+    catch_up();
     asked_for_ = now_ < end ? now_ : asked_for_;
     if (workers_ != nullptr) {
         workers_->rest();

@@ -58,6 +58,7 @@ class Array {
   private:
     void run_quantum(double end);
     void run_tile(unsigned index, double end);
+    void catch_up();
     void connect(End from, End to);
     void rebuild_order();
     double idle_until();
@@ -70,6 +71,8 @@ class Array {
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::vector<std::unique_ptr<Wire>> wires_;
     std::vector<std::vector<Wire*>> into_, out_of_; // each tile's wires
+    // Until when each tile sleeps, unless something comes in: it need not run, and may lag behind, before.
+    std::vector<double> sleeps_until_;
     std::unique_ptr<Workers> workers_;
     unsigned writing_ = 0; // which of a wire's two lists
     double now_ = 0;

@@ -139,12 +139,13 @@ double Wire::pending() const {
     return raw_.empty() ? border : std::min(border, raw_.front().ticks);
 }
 
-void Wire::deliver() {
+bool Wire::hand_over() {
     std::vector<Edge>& edges = sent_[1 - writing_];
     for (const Edge& edge : edges) {
         to_.chip().push_edge(to_pin_, to_.clock().to_cycle(edge.ticks), edge.level);
     }
     edges.clear();
+    return true;
 }
 
 void Wire::state(avr::Archive& archive) {

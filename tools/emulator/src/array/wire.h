@@ -48,8 +48,8 @@ class Wire : public avr::EdgeListener {
     void edge(avr::PinId pin, uint64_t cycle, bool level) override;
     // Of the sender's turn: all before `end` is certain.
     void settle(double end);
-    // Of the receiver's turn: hands over what was sent before this quantum.
-    void deliver();
+    // Of the receiver's turn: hands over what was sent before this quantum; false: nothing was.
+    bool deliver() { return !sent_[1 - writing_].empty() && hand_over(); }
     // When it next has to be looked at, in ticks: at once, if something waits to be delivered.
     double pending() const;
     bool has_fault() const { return fault_.harms(); }
@@ -62,6 +62,7 @@ class Wire : public avr::EdgeListener {
         void state(avr::Archive& archive) { archive(ticks, level); }
     };
 
+    bool hand_over();
     void start_byte(double ticks);
     void pass_borders(double until);
     void send(double ticks);

@@ -45,8 +45,12 @@ void Chip::update_clocks(uint64_t cycle) {
 
 void Chip::sleep_changed(bool asleep, uint64_t cycle) {
     const auto mode = static_cast<SleepMode>(cpu_.data[kSmcr] >> 1 & 7);
+    const bool was_deep = cpu_.deeply;
     cpu_.deeply = asleep && mode != SleepMode::Idle;
     cpu_.wake_cycles = 0;
+    if (cpu_.deeply == was_deep) {
+        return;
+    }
     if (cpu_.deeply && mode != SleepMode::NoiseReduction) {
         const bool crystal_stops = mode == SleepMode::PowerDown || mode == SleepMode::PowerSave;
         cpu_.wake_cycles = crystal_stops ? kCrystalCycles : kStandbyCycles;

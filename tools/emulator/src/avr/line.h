@@ -22,6 +22,24 @@ class Line {
 
     bool level_at(uint64_t cycle) const;
 
+    // The same for one moment after the other, at the cost of one look at each edge.
+    class Levels {
+      public:
+        explicit Levels(const Line& line) : line_(line), next_(line.first_), level_(line.before_) {}
+        // `cycle` must not lie before that of the last call.
+        bool at(uint64_t cycle) {
+            while (next_ < line_.edges_.size() && line_.edges_[next_].cycle <= cycle) {
+                level_ = line_.edges_[next_++].level;
+            }
+            return level_;
+        }
+
+      private:
+        const Line& line_;
+        size_t next_;
+        bool level_;
+    };
+
     // The first edge after `cycle`, or null.
     const Edge* next_after(uint64_t cycle) const;
 

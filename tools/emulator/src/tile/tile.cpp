@@ -55,7 +55,7 @@ void Tile::run_until(double end) {
             chip_.pass_while_off(cycle);
         }
         note_display();
-        host_.follow(bit_ticks(kUsartPins[board::kHostUsart][0]));
+        host_.follow(bit_ticks(board::kHostUsart));
     }
     host_.run_until(end);
     for (const auto& probe : probes_) {
@@ -99,13 +99,16 @@ void Tile::set_power(bool on) {
     clock_.divide(chip_.cpu().clock_divisor, chip_.cpu().cycle);
 }
 
+// As nominal as a program means it.
+double Tile::bit_ticks(unsigned usart) {
+    return static_cast<double>(chip_.usart(usart).bit_cycles()) * chip_.cpu().clock_divisor;
+}
+
 double Tile::bit_ticks(avr::PinId pin) {
     for (unsigned i = 0; i < 4; i++) {
         for (const avr::PinId own : kUsartPins[i]) {
             if (own.port == pin.port && own.bit == pin.bit) {
-                const uint32_t cycles = chip_.usart(i).bit_cycles();
-                return static_cast<double>(cycles) *
-                       chip_.cpu().clock_divisor; // as nominal as a program means it
+                return bit_ticks(i);
             }
         }
     }

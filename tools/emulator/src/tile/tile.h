@@ -60,6 +60,7 @@ class Tile {
     void state(avr::Archive& archive);
 
   private:
+    double bit_ticks(unsigned usart);
     void execute_until(double end);
     uint16_t stack_floor() const;
     bool lit(avr::PinId pin);
