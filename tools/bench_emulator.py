@@ -14,7 +14,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from tilenca.emulator import Array
+from tilenca.emulator import EAST, WEST, Array, Link
 from tilenca.paths import ROOT
 
 SOURCES = ROOT / "tools" / "emulator" / "bench"
@@ -49,9 +49,11 @@ def simavr_mhz(program: Path, elf: Path) -> float:
     return float(done.stderr)
 
 
-def times_real_time(elf: Path, tiles: int, seconds: float, threads: int = 1) -> float:
+def times_real_time(
+    elf: Path, tiles: int, seconds: float, threads: int = 1, links: Sequence[Link] = ()
+) -> float:
     """Emulated seconds in a second."""
-    with Array(elf, tiles, threads=threads) as array:
+    with Array(elf, tiles, links, threads=threads) as array:
         array.run(WARM_UP_S)
         started = time.perf_counter()
         array.run(seconds)
@@ -76,6 +78,8 @@ def measure(rounds: int, directory: Path) -> list[tuple[str, str, str]]:
     theirs = simavr(directory)
     ours_mhz, their_mhz = [], []
     busy_one, busy_two, sleeping, crowd, set_up = [], [], [], [], []
+    joined: dict[int, list[float]] = {1: [], 2: []}
+    row = [(tile, EAST, tile + 1, WEST) for tile in range(TILES - 1)]
     cost: dict[int, list[float]] = {count: [] for count in COUNTS}
     for _ in range(rounds):
         ours_mhz.append(CLOCK_MHZ * times_real_time(busy, 1, MEGACYCLES / CLOCK_MHZ))
@@ -83,6 +87,8 @@ def measure(rounds: int, directory: Path) -> list[tuple[str, str, str]]:
             their_mhz.append(simavr_mhz(theirs, busy))
         busy_one.append(times_real_time(busy, TILES, 0.2))
         busy_two.append(times_real_time(busy, TILES, 0.2, threads=2))
+        for threads, figures in joined.items():
+            figures.append(times_real_time(busy, TILES, 0.2, threads, row))
         sleeping.append(times_real_time(idle, TILES, 1.0))
         crowd.append(times_real_time(busy, 100, 0.04))
         set_up.append(-set_up_ms(busy, TILES))
@@ -98,6 +104,11 @@ def measure(rounds: int, directory: Path) -> list[tuple[str, str, str]]:
         ("one busy tile, one core", f"{best(ours_mhz):.0f} MHz, {ratio}", "600 MHz, 6 times"),
         (f"{TILES} busy tiles, one thread", f"{best(busy_one):.1f} times real time", "2.5"),
         (f"{TILES} busy tiles, two threads", f"{best(busy_two):.1f} times real time", "4.5"),
+        (
+            f"{TILES} busy tiles in a row, cables between them, one thread and two",
+            f"{best(joined[1]):.1f} and {best(joined[2]):.1f} times real time",
+            "",
+        ),
         (f"{TILES} sleeping tiles, one thread", f"{best(sleeping):.0f} times real time", "50"),
         ("100 busy tiles, one thread", f"{best(crowd):.2f} times real time", "they run"),
         (f"set-up of {TILES} tiles", f"{-best(set_up):.1f} ms", "50 ms"),

@@ -5,6 +5,12 @@
 
 namespace tilenca {
 
+namespace {
+
+constexpr double kTurnsAlone = 64;
+
+} // namespace
+
 Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks)
     : image_(image), fuses_(fuses), program_(std::make_shared<avr::Program>()) {
     for (const Block& block : image.flash) {
@@ -124,7 +130,7 @@ double Array::idle_until() {
     return soonest;
 }
 
-void Array::run_tile(unsigned index, double end) {
+void Array::run_tile_until(unsigned index, double end) {
     bool has_mail = false;
     for (Wire* wire : into_[index]) {
         has_mail = wire->deliver() || has_mail;
@@ -143,6 +149,12 @@ void Array::run_tile(unsigned index, double end) {
     }
 }
 
+void Array::run_tile(unsigned index) {
+    for (double end = turn_begin_ + kQuantumTicks; end <= now_; end += kQuantumTicks) {
+        run_tile_until(index, end);
+    }
+}
+
 // Every tile is brought to the present; from here on anything may be done to it.
 void Array::catch_up() {
     for (auto& tile : tiles_) {
@@ -151,15 +163,15 @@ void Array::catch_up() {
     sleeps_until_.assign(tiles_.size(), 0);
 }
 
-void Array::run_quantum(double end) {
+void Array::run_quanta() {
     writing_ = 1 - writing_;
-    if (workers_ == nullptr) {
-        for (unsigned i = 0; i < size(); i++) {
-            run_tile(i, end);
-        }
+    if (workers_ != nullptr) {
+        workers_->share(size());
         return;
     }
-    workers_->share(size(), [this, end](unsigned i) { run_tile(i, end); });
+    for (unsigned i = 0; i < size(); i++) {
+        run_tile(i);
+    }
 }
 
 bool Array::has_halted() const {
@@ -172,9 +184,11 @@ void Array::run_for(double ticks) {
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
     catch_up(); // one that was halted has to
     while (now_ < end && !has_halted()) {
-        const double busy_from = std::floor(idle_until() / kQuantumTicks) * kQuantumTicks;
-        now_ = std::min(end, busy_from + kQuantumTicks);
-        run_quantum(now_);
+        // Tiles that nothing joins can take many turns at once.
+        const double turns = wires_.empty() ? kTurnsAlone * kQuantumTicks : kQuantumTicks;
+        turn_begin_ = std::min(end - kQuantumTicks, std::floor(idle_until() / kQuantumTicks) * kQuantumTicks);
+        now_ = std::min(end, turn_begin_ + turns);
+        run_quanta();
     }
     catch_up();
     asked_for_ = now_ < end ? now_ : asked_for_;
@@ -184,7 +198,10 @@ void Array::run_for(double ticks) {
 }
 
 void Array::set_threads(unsigned threads) {
-    workers_ = threads > 1 ? std::make_unique<Workers>(threads) : nullptr;
+    workers_ = nullptr;
+    if (threads > 1) {
+        workers_ = std::make_unique<Workers>(threads, [this](unsigned i) { run_tile(i); });
+    }
 }
 
 std::string Array::fault(unsigned index) {

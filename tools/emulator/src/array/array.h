@@ -56,8 +56,9 @@ class Array {
     void load(const uint8_t* bytes, size_t count);
 
   private:
-    void run_quantum(double end);
-    void run_tile(unsigned index, double end);
+    void run_quanta();
+    void run_tile(unsigned index);
+    void run_tile_until(unsigned index, double end);
     void catch_up();
     void connect(End from, End to);
     void rebuild_order();
@@ -76,6 +77,7 @@ class Array {
     std::unique_ptr<Workers> workers_;
     unsigned writing_ = 0; // which of a wire's two lists
     double now_ = 0;
+    double turn_begin_ = 0; // of the quanta under way, which end now
     double asked_for_ = 0;
 };
 

@@ -7,7 +7,9 @@ namespace tilenca {
 namespace {
 
 constexpr int kSpins = 2000;
-constexpr uint64_t kRound = uint64_t{1} << 32;
+// So long a thread waits for another one's part before it helps out: longer than a quantum takes, since tiles
+// that change their thread have to change caches, too.
+constexpr int kPatience = 400;
 
 // Leaves the other thread of the same core more of it.
 void relax() {
@@ -18,9 +20,10 @@ void relax() {
 
 } // namespace
 
-Workers::Workers(unsigned threads) {
+Workers::Workers(unsigned threads, std::function<void(unsigned)> work)
+    : threads_(threads), work_(std::move(work)), parts_(new Part[threads]), is_manned_(threads, 1) {
     for (unsigned i = 1; i < threads; i++) {
-        helpers_.emplace_back([this] { help(); });
+        helpers_.emplace_back([this, i] { help(i); });
     }
 }
 
@@ -31,22 +34,42 @@ Workers::~Workers() {
     }
 }
 
-bool Workers::take_turn() {
-    uint64_t ticket = ticket_.load(std::memory_order_acquire);
-    const auto index = static_cast<unsigned>(ticket);
-    // A round that has ended meanwhile has another ticket: then the exchange fails.
-    if (index >= count_.load(std::memory_order_acquire) ||
-        !ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel)) {
-        return index < count_.load(std::memory_order_relaxed);
-    }
-    (*work_.load(std::memory_order_acquire))(index);
-    done_.fetch_add(1, std::memory_order_release);
-    return true;
+Workers::Order Workers::order_of(const Part& part) {
+    const uint64_t word = part.order.load(std::memory_order_acquire);
+    return {static_cast<uint32_t>(word >> 32), static_cast<unsigned>(word >> 16 & kMostCalls),
+            static_cast<unsigned>(word & kMostCalls)};
 }
 
-void Workers::help() {
+unsigned Workers::work_off(Part& part, uint32_t round) {
+    const Order order = order_of(part);
+    if (order.round != round) {
+        return 0;
+    }
+    for (unsigned calls = 0;; calls++) {
+        uint64_t taken = part.taken.load(std::memory_order_acquire);
+        // Below 0: nobody has begun with it. Above: the round is over, and this thread slept through its end.
+        const auto ahead = static_cast<int32_t>(static_cast<uint32_t>(taken >> 32) - round);
+        const unsigned next = ahead < 0 ? order.begin : static_cast<unsigned>(taken);
+        if (ahead > 0 || next >= order.end ||
+            !part.taken.compare_exchange_strong(taken, uint64_t{round} << 32 | (next + 1),
+                                                std::memory_order_acq_rel)) {
+            return calls;
+        }
+        work_(next);
+    }
+}
+
+void Workers::help(unsigned own) {
+    Part& mine = parts_[own];
     for (int spins = 0; !ends_.load(std::memory_order_relaxed); spins++) {
-        if (take_turn()) {
+        const uint32_t round = order_of(mine).round;
+        if (round != mine.seen.load(std::memory_order_relaxed)) {
+            mine.seen.store(round, std::memory_order_relaxed);
+            spins = 0;
+        }
+        const unsigned part = spins < kPatience ? own : (own + static_cast<unsigned>(spins)) % threads_;
+        if (const unsigned calls = round == 0 ? 0 : work_off(parts_[part], round); calls != 0) {
+            mine.done.store(mine.done.load(std::memory_order_relaxed) + calls, std::memory_order_release);
             spins = 0;
         } else if (spins < kSpins) {
             relax();
@@ -58,16 +81,43 @@ void Workers::help() {
     }
 }
 
-void Workers::share(unsigned count, const std::function<void(unsigned)>& work) {
-    resting_ = false;
-    done_ = 0;
-    count_ = 0; // so that nobody takes a ticket of the new round with the old work
-    ticket_ = (ticket_ / kRound + 1) * kRound;
-    work_ = &work;
-    count_.store(count, std::memory_order_release);
-    while (take_turn()) {
+// An owner that did not come in time last time is not waited for before it shows itself again.
+unsigned Workers::help_out(bool is_late) {
+    unsigned calls = 0;
+    for (unsigned i = 1; i < threads_; i++) {
+        if (is_manned_[i] == 0) {
+            is_manned_[i] = parts_[i].seen.load(std::memory_order_relaxed) == round_;
+        }
+        if (is_late || is_manned_[i] == 0) {
+            const unsigned done = work_off(parts_[i], round_);
+            is_manned_[i] = is_manned_[i] != 0 && done == 0;
+            calls += done;
+        }
     }
-    for (int spins = 0; done_.load(std::memory_order_acquire) != count; spins++) {
+    return calls;
+}
+
+uint64_t Workers::done_by_helpers() const {
+    uint64_t done = 0;
+    for (unsigned i = 1; i < threads_; i++) {
+        done += parts_[i].done.load(std::memory_order_acquire);
+    }
+    return done;
+}
+
+void Workers::share(unsigned count) {
+    if (resting_.load(std::memory_order_relaxed)) {
+        resting_ = false;
+    }
+    const uint64_t before = done_by_helpers();
+    round_ = round_ == 0xFFFFFFFF ? 1 : round_ + 1;
+    for (unsigned i = threads_; i-- != 0;) {
+        const uint64_t begin = i * count / threads_, end = (i + 1) * count / threads_;
+        parts_[i].order.store(uint64_t{round_} << 32 | begin << 16 | end, std::memory_order_release);
+    }
+    unsigned own = work_off(parts_[0], round_);
+    for (int spins = 0; done_by_helpers() - before + own != count; spins++) {
+        own += help_out(spins >= kPatience);
         if (spins < kSpins) {
             relax();
         } else {
