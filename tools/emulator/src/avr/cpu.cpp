@@ -128,6 +128,11 @@ bool Cpu::grow_stack(uint16_t from, uint16_t lowest) {
         stack_deepest = std::min(stack_deepest, lowest);
         return true;
     }
+    if (from >= stack_floor) {
+        stack_is_elsewhere = false;
+    } else if (from + 1 < stack_floor) {
+        stack_is_elsewhere = true; // it has not grown there, or that would have been seen
+    }
     if (stack_is_elsewhere) {
         return true;
     }
