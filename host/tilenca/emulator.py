@@ -102,7 +102,7 @@ class Array:
             BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
             UsageError: the lists do not fit the number of tiles.
         """
-        self.handle: int | None = None
+        self._handle: int | None = None
         ppm, switch_on_s = ppm or [0.0] * tiles, switch_on_s or [0.0] * tiles
         if tiles < 1 or len(ppm) != tiles or len(switch_on_s) != tiles:
             raise UsageError(
@@ -111,15 +111,26 @@ class Array:
             )
         doubles = c_double * tiles
         boot = None if bootloader is None else os.fsencode(bootloader)
-        self.handle = library().tilenca_array_new(
+        self._handle = library().tilenca_array_new(
             os.fsencode(image), boot, tiles, doubles(*ppm), doubles(*switch_on_s)
         )
-        if not self.handle:
+        if not self._handle:
             raise image_error(last_error())
         self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
         for link in links:
             self.link(*link)
         self.set_threads(threads)
+
+    @property
+    def handle(self) -> int:
+        """The array as the C library knows it.
+
+        Raises:
+            UsageError: it has been closed.
+        """
+        if self._handle is None:
+            raise UsageError("the array is closed; build another")
+        return self._handle
 
     # --- tiles and cables, also while it runs ---
 
@@ -237,6 +248,8 @@ class Array:
         if library().tilenca_array_load(self.handle, snapshot, len(snapshot)):
             raise UsageError(f"snapshot: {last_error()}; save it anew")
         count = library().tilenca_array_size(self.handle)
+        for tile in self._tiles[count:]:
+            tile.retire()
         del self._tiles[count:]
         while len(self._tiles) < count:
             self._tiles.append(EmulatedTile(self, len(self._tiles)))
@@ -275,9 +288,9 @@ class Array:
 
     def close(self) -> None:
         """Frees the tiles; the array cannot be used afterwards."""
-        if self.handle:
-            library().tilenca_array_free(self.handle)
-            self.handle = None
+        if self._handle:
+            library().tilenca_array_free(self._handle)
+            self._handle = None
 
     def __del__(self) -> None:
         self.close()

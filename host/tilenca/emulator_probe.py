@@ -46,7 +46,7 @@ class WireByte:
 class PinProbe:
     """The edges of one pin since it was made. Made by `EmulatedTile.probe`."""
 
-    def __init__(self, handle: Callable[[], int | None], tile: int, port: str, bit: int) -> None:
+    def __init__(self, handle: Callable[[], int], tile: int, port: str, bit: int) -> None:
         self.name = f"P{port}{bit}"
         self.tile = tile
         self._handle = handle
@@ -74,7 +74,7 @@ class PinProbe:
 class WireTap:
     """The bytes on one wire since it was made. Made by `EmulatedTile.tap`."""
 
-    def __init__(self, handle: Callable[[], int | None], tile: int, port: str, bit: int, baud: float) -> None:
+    def __init__(self, handle: Callable[[], int], tile: int, port: str, bit: int, baud: float) -> None:
         self._handle = handle
         self._number = library().tilenca_probe_new(handle(), tile, port.encode(), bit, baud)
         check(self._number >= 0)

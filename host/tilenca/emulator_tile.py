@@ -20,7 +20,9 @@ SRAM_END = 0x2200
 class Home(Protocol):
     """What a tile needs of the array it is in."""
 
-    handle: int | None
+    @property
+    def handle(self) -> int:
+        """The array as the C library knows it."""
 
     def symbol(self, name: str) -> tuple[int, int]:
         """Address and size of a symbol."""
@@ -30,6 +32,23 @@ class Home(Protocol):
 
     def function_at(self, address: int) -> str:
         """The function that contains a byte of flash."""
+
+
+class _Nowhere:
+    """Where a tile is that an array no longer has."""
+
+    @property
+    def handle(self) -> int:
+        raise UsageError("this tile came after the moment that was restored; it is no more")
+
+    def symbol(self, name: str) -> tuple[int, int]:
+        raise UsageError(f"'{name}' of a tile that is no more")
+
+    def code_address(self, place: str | int) -> int:
+        raise UsageError(f"'{place}' of a tile that is no more")
+
+    def function_at(self, address: int) -> str:
+        raise UsageError(f"0x{address:05X} of a tile that is no more")
 
 
 class ResetCause(IntEnum):
@@ -93,6 +112,10 @@ class EmulatedTile:
     def __init__(self, array: Home, index: int) -> None:
         self._array = array
         self.index = index
+
+    def retire(self) -> None:
+        """The array it was in has gone back to before it was there."""
+        self._array = _Nowhere()
 
     @property
     def segments(self) -> int:

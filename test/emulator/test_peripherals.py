@@ -183,6 +183,29 @@ def test_free_running_conversions_follow_each_other(avr: Compile) -> None:
     assert words(run(avr(source), 0.1).read_memory(0x1000, 2))[0] == int((1.6e6 - 25 * 128) / (13 * 128)) + 1
 
 
+def test_a_result_stays_between_the_reads_of_its_two_bytes(avr: Compile) -> None:
+    source = """
+    int main(void) {
+        ADMUX = 0x40; ADCSRA = 0xE2;                            /* free running, 52 cycles each */
+        _delay_us(20);
+        uint8_t low = ADCL;
+        result[8] = 1; while (result[8]) { }                    /* the voltage changes */
+        _delay_us(20);
+        result[0] = low; result[1] = ADCH;
+        _delay_us(20);
+        result16[1] = ADC;
+        for (;;) { }
+    }"""
+    array = Array(avr(source))
+    array[0].set_analog(0, 0x1FF)
+    array.run(0.001)
+    array[0].set_analog(0, 0x200)
+    array.run(0.001)
+    array[0].write_memory(0x1008, b"\0")
+    array.run(0.001)
+    assert words(array[0].read_memory(0x1000, 4)) == [0x1FF, 0x200]
+
+
 @pytest.mark.parametrize(
     ("mux", "volts", "expected"),
     [

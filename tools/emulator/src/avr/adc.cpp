@@ -19,7 +19,7 @@ constexpr double kBandgap = 225; // 1.1 V of 5 V
 } // namespace
 
 std::vector<uint16_t> Adc::registers() const {
-    return {kAdcsra, kAdcsrb};
+    return {kAdcl, kAdch, kAdcsra, kAdcsrb};
 }
 
 std::vector<uint8_t> Adc::vectors() const {
@@ -68,7 +68,15 @@ void Adc::begin(uint64_t cycle) {
     warm_ = true;
 }
 
+uint8_t Adc::read(uint16_t address, uint64_t) {
+    held_ = address == kAdcl || (held_ && address != kAdch);
+    return byte(address);
+}
+
 void Adc::write(uint16_t address, uint8_t value, uint64_t cycle) {
+    if (address == kAdcl || address == kAdch) {
+        return; // to be read only
+    }
     if (address == kAdcsrb) {
         byte(kAdcsrb) = value;
     } else {
@@ -123,8 +131,10 @@ void Adc::on_event(Slot, uint64_t cycle) {
     const int result = is_difference_ ? std::clamp(int(std::floor(value)), -512, 511) & 0x3FF
                                       : std::clamp(int(std::lround(value)), 0, 1023);
     const auto shown = static_cast<uint16_t>((byte(kAdmux) & kAdlar) != 0 ? result << 6 : result);
-    byte(kAdcl) = static_cast<uint8_t>(shown);
-    byte(kAdch) = static_cast<uint8_t>(shown >> 8);
+    if (!held_) { // else this result is lost
+        byte(kAdcl) = static_cast<uint8_t>(shown);
+        byte(kAdch) = static_cast<uint8_t>(shown >> 8);
+    }
     byte(kAdcsra) |= kAdif;
     if (is_triggered_by(AdcTrigger::FreeRunning)) {
         by_trigger_ = false;
@@ -152,7 +162,7 @@ void Adc::set_noise(double deviation, uint64_t seed) {
 }
 
 void Adc::reset(uint64_t) {
-    warm_ = by_trigger_ = false;
+    warm_ = by_trigger_ = held_ = false;
     core_.schedule.cancel(Slot::Adc);
 }
 
@@ -165,7 +175,7 @@ void Adc::clock_starts(uint64_t, uint64_t stood) {
 }
 
 void Adc::state(Archive& archive) {
-    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, sampled_);
+    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_);
 }
 
 } // namespace tilenca::avr

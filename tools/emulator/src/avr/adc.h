@@ -26,6 +26,7 @@ class Adc : public Peripheral {
     explicit Adc(const Core& core) : Peripheral(core) {}
 
     std::vector<uint16_t> registers() const override;
+    uint8_t read(uint16_t address, uint64_t cycle) override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
@@ -62,6 +63,7 @@ class Adc : public Peripheral {
     bool warm_ = false;       // the first conversion after switching on takes longer
     bool by_trigger_ = false; // the conversion under way was started by an event
     bool is_difference_ = false;
+    bool held_ = false; // ADCL has been read: the result stays until ADCH has
     double sampled_ = 0;
     std::function<void(uint64_t)> trigger_changed_ = [](uint64_t) {};
 };
