@@ -70,6 +70,8 @@ class Gpio : public Peripheral {
     void ignore(PinId pin, EdgeListener* listener);
     // A peripheral that takes its input from a pin; at most one for each. Null: none any more.
     void watch(PinId pin, PinWatcher* watcher, uint64_t cycle);
+    // A watcher enters itself again after its state has been loaded.
+    void watch_again(PinId pin, PinWatcher* watcher) { ports_[pin.port].watchers[pin.bit] = watcher; }
     // Whether a change of the pin must be known when it happens.
     bool is_observed(PinId pin) const;
     // A pin that a timer drives has changed.
@@ -87,6 +89,8 @@ class Gpio : public Peripheral {
     void drive_again(PinId pin, PinSource* source) { ports_[pin.port].sources[pin.bit] = source; }
 
     bool level(PinId pin, uint64_t cycle);
+    // As of when somebody looked last.
+    bool last_level(PinId pin) const { return (ports_[pin.port].levels >> pin.bit & 1) != 0; }
     bool is_output(PinId pin) const;
     // What comes from outside, at a time that may lie a little back.
     bool input_at(PinId pin, uint64_t cycle) const;

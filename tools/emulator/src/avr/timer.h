@@ -44,6 +44,7 @@ class Timer : public Peripheral, public PinSource, private PinWatcher {
     void pin_changed(PinId pin, uint64_t cycle, bool level) override;
     void capture(uint64_t cycle);
     void watch_inputs(uint64_t cycle);
+    bool captures() const;
     bool is_observed() const;
     void show_outputs(uint64_t cycle);
     bool is_wide() const { return number_ == 1 || number_ >= 3; }

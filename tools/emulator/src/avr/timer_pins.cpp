@@ -84,13 +84,16 @@ void Timer::show_outputs(uint64_t cycle) {
 
 // --- inputs ---
 
+bool Timer::captures() const {
+    return is_wide() && (divisor_ != 0 || external_clock_ != 0) && !comparator_captures_;
+}
+
 void Timer::watch_inputs(uint64_t cycle) {
-    const bool runs = divisor_ != 0 || external_clock_ != 0;
     if (number_ != 2) {
         gpio_.watch(kInputs[number_].clock, external_clock_ != 0 ? this : nullptr, cycle);
     }
     if (is_wide()) {
-        gpio_.watch(kInputs[number_].capture, runs && !comparator_captures_ ? this : nullptr, cycle);
+        gpio_.watch(kInputs[number_].capture, captures() ? this : nullptr, cycle);
     }
 }
 
@@ -164,7 +167,12 @@ void Timer::state(Archive& archive) {
                 gpio_.drive_again(pins_[i], this);
             }
         }
-        watch_inputs(core_.cpu.cycle);
+        if (external_clock_ != 0) {
+            gpio_.watch_again(kInputs[number_].clock, this);
+        }
+        if (captures()) {
+            gpio_.watch_again(kInputs[number_].capture, this);
+        }
     }
 }
 

@@ -185,7 +185,7 @@ void Tile::state(avr::Archive& archive) {
     archive(clock_, powered_, cycles_off_, host_, seen_changes_, shown_, display_changes_, chip_);
     if (archive.loading()) {
         for (const auto& probe : probes_) {
-            probe->restart(chip_.gpio().level(probe->pin(), chip_.cpu().cycle));
+            probe->restart(chip_.gpio().last_level(probe->pin())); // looking would change what was loaded
         }
     }
 }
