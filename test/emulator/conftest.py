@@ -30,6 +30,12 @@ def library() -> Path:
     return LIBRARY
 
 
+def hex_record(kind: int, address: int, data: bytes) -> str:
+    """A line of an Intel HEX file."""
+    body = bytes([len(data), address >> 8 & 0xFF, address & 0xFF, kind]) + data
+    return f":{(body + bytes([-sum(body) & 0xFF])).hex().upper()}\n"
+
+
 def compile_differential(library: Path, directory: Path) -> Path:
     """The program that runs our core and libsimavr side by side."""
     program, source = directory / "differential", Path(__file__).parent / "differential.cpp"

@@ -7,7 +7,7 @@ from ctypes import CDLL, c_char, c_char_p, c_double, c_int, c_uint, c_uint64, c_
 from pathlib import Path
 
 import pytest
-from conftest import Compile, run_tool
+from conftest import Compile, hex_record, run_tool
 
 from tilenca.emulator import LIBRARY, Array
 from tilenca.errors import BuildError, TilencaError, UsageError
@@ -92,11 +92,6 @@ def test_damaged_images_are_refused_or_loaded_but_never_crash(
     assert outcomes == ({"loaded", "refused in one line"} if kind == "elf" else {"refused in one line"})
 
 
-def hex_record(kind: int, address: int, data: bytes) -> str:
-    body = bytes([len(data), address >> 8 & 0xFF, address & 0xFF, kind]) + data
-    return f":{(body + bytes([-sum(body) & 0xFF])).hex().upper()}"
-
-
 def test_hex_records_with_sound_checksums_and_senseless_contents_never_crash(tmp_path: Path) -> None:
     draw = random.Random(23)
     victim = tmp_path / "victim.hex"
@@ -108,7 +103,7 @@ def test_hex_records_with_sound_checksums_and_senseless_contents_never_crash(tmp
             length = draw.choice([0, 1, 2, 2, 4, 16, 255])
             data = bytes(draw.choice([0, 1, 3, 4, draw.randrange(256)]) for _ in range(length))
             lines.append(hex_record(kind, draw.randrange(65536), data))
-        victim.write_text("\n".join([*lines, ":00000001FF"] if draw.random() < 0.8 else lines) + "\n")
+        victim.write_text("".join([*lines, ":00000001FF\n"] if draw.random() < 0.8 else lines))
         try:
             with Array(victim) as array:
                 array.run(0.0001)
@@ -124,12 +119,12 @@ def test_hex_records_with_sound_checksums_and_senseless_contents_never_crash(tmp
     [
         (hex_record(4, 0, b"\x00"), ":1: a record of a kind or length that there is not (4)"),
         (hex_record(7, 0, b"\x00"), ":1: a record of a kind or length that there is not (7)"),
-        (hex_record(4, 0, b"\x00\x04") + "\n" + hex_record(0, 0, b"x"), ":2: beyond the 256 KiB of flash"),
-        (hex_record(0, 0, b"x")[:-1] + "0", ":1: not a sound Intel HEX record"),
+        (hex_record(4, 0, b"\x00\x04") + hex_record(0, 0, b"x"), ":2: beyond the 256 KiB of flash"),
+        (hex_record(0, 0, b"x")[:-2] + "0\n", ":1: not a sound Intel HEX record"),
     ],
 )
 def test_a_hex_file_that_makes_no_sense_names_the_line(tmp_path: Path, record: str, fact: str) -> None:
-    assert fact in refused(tmp_path / "bad.hex", (record + "\n:00000001FF\n").encode())
+    assert fact in refused(tmp_path / "bad.hex", (record + ":00000001FF\n").encode())
 
 
 def test_random_programs_stop_or_run_but_never_crash(tmp_path: Path) -> None:
@@ -150,7 +145,7 @@ def test_random_programs_stop_or_run_but_never_crash(tmp_path: Path) -> None:
             ]
             noise = b"".join(word.to_bytes(2, "little") for word in mixed)
         lines = [hex_record(0, start, noise[start : start + 16]) for start in range(0, 4096, 16)]
-        victim.write_text("\n".join([*lines, ":00000001FF", ""]))
+        victim.write_text("".join([*lines, ":00000001FF\n"]))
         with Array(victim, 2, [(0, 1, 1, 3), (0, 0, 1, 2)]) as array:
             for _ in range(5):
                 with suppress(TilencaError):

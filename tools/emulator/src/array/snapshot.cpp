@@ -39,7 +39,7 @@ std::vector<uint8_t> Array::save() {
         End from = wire->from(), to = wire->to();
         archive(from.tile, from.side, to.tile, to.side);
     }
-    archive(now_, asked_for_, writing_);
+    archive(now_, asked_for_);
     for (const auto& one : tiles_) {
         archive(*one);
     }
@@ -84,6 +84,7 @@ void Array::load(const uint8_t* bytes, size_t count) {
         ends.emplace_back(from, to);
     }
     wires_.clear();
+    writing_ = 0;
     while (size() > tiles) {
         tiles_.pop_back();
     }
@@ -94,14 +95,14 @@ void Array::load(const uint8_t* bytes, size_t count) {
         connect(from, to);
     }
     rebuild_order();
-    archive(now_, asked_for_, writing_);
+    archive(now_, asked_for_);
     for (const auto& one : tiles_) {
         archive(*one);
     }
     for (const auto& wire : wires_) {
         archive(*wire);
     }
-    if (!archive.at_end() || writing_ > 1) {
+    if (!archive.at_end()) {
         throw avr::ArchiveError("it does not end where it should");
     }
 }

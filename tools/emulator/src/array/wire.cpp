@@ -150,9 +150,9 @@ bool Wire::hand_over() {
 
 void Wire::state(avr::Archive& archive) {
     std::vector<Edge> raw(raw_.begin(), raw_.end());
-    archive(sent_[0], sent_[1], connected_, fault_.loss, fault_.flip, fault_.delay, fault_.baud, random_,
-            counts_.bytes, counts_.lost, counts_.flipped, raw, raw_level_, out_level_, muted_, flipping_,
-            flips_, start_, bit_, border_);
+    archive(sent_[writing_], sent_[1 - writing_], connected_, fault_.loss, fault_.flip, fault_.delay,
+            fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_level_, out_level_,
+            muted_, flipping_, flips_, start_, bit_, border_);
     raw_.assign(raw.begin(), raw.end());
 }
 

@@ -100,6 +100,7 @@ class Chip : private Bus {
     void write_clock_prescaler(uint8_t value, uint64_t cycle);
     void update_trap(uint32_t word);
     void flash_state(Archive& archive);
+    void forget_past(PinId pin);
     void write_system(uint16_t address, uint8_t value, uint64_t cycle);
     void synchronise_prescalers(uint8_t value, uint64_t cycle);
     Peripheral& at_slot(Slot slot);

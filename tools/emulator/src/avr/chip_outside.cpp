@@ -3,17 +3,22 @@
 
 namespace tilenca::avr {
 
+// Drops the edges of a wire that nobody will ask for again.
+void Chip::forget_past(PinId pin) {
+    uint64_t needed = spi_->needs_line_from(cpu_.cycle);
+    for (auto& usart : usarts_) {
+        const PinId receives = usart->receive_pin();
+        if (receives.port == pin.port && receives.bit == pin.bit) {
+            needed = usart->needs_line_from(needed);
+        }
+    }
+    gpio_->line(pin)->forget_before(needed);
+}
+
 void Chip::push_edge(PinId pin, uint64_t cycle, bool level) {
     Line& line = *gpio_->line(pin);
     if (line.edges() > 32) {
-        uint64_t needed = cpu_.cycle;
-        for (auto& usart : usarts_) {
-            const PinId receives = usart->receive_pin();
-            if (receives.port == pin.port && receives.bit == pin.bit) {
-                needed = usart->needs_line_from(needed);
-            }
-        }
-        line.forget_before(needed);
+        forget_past(pin);
     }
     line.push(cycle, level);
     gpio_->line_changed(pin);
@@ -131,6 +136,12 @@ void Chip::flash_state(Archive& archive) {
 }
 
 void Chip::state(Archive& archive) {
+    for (uint8_t pin = 0; pin < 8 * kPorts; pin++) { // how much of the past is still there tells nothing
+        if (const PinId id{static_cast<uint8_t>(pin / 8), static_cast<uint8_t>(pin % 8)};
+            !archive.loading() && gpio_->line(id) != nullptr) {
+            forget_past(id);
+        }
+    }
     flash_state(archive);
     archive(cpu_, schedule_, warnings_);
     for (Peripheral* peripheral : all_) {

@@ -18,6 +18,8 @@ class Spi : public Peripheral {
     void reset(uint64_t cycle) override;
     void state(Archive& archive) override;
 
+    // Edges on MISO before this cycle matter no more.
+    uint64_t needs_line_from(uint64_t now) const { return busy_ && started_ < now ? started_ : now; }
     // MISO gets what MOSI sends, as with a wire between the two.
     void set_loopback(bool on) { loopback_ = on; }
 
