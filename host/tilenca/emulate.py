@@ -18,7 +18,7 @@ from rich.live import Live
 
 from tilenca import paths
 from tilenca.arguments import count, number, whole
-from tilenca.emulate_debug import attend, debuggers, waveforms
+from tilenca.emulate_debug import attend, debuggers, frames, waveforms
 from tilenca.emulate_faults import parse as parse_fault
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
 from tilenca.emulate_view import Picture, beside, mismatch, take_picture, verdict
@@ -117,6 +117,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="with --vcd: this pin, such as 3:H1, instead; again for more",
     )
     add(
+        "--frames",
+        type=Path,
+        metavar="F",
+        help="one shape: write the frames on its cables to F, as JSON lines",
+    )
+    add(
         "--gdb",
         action="append",
         default=[],
@@ -139,7 +145,7 @@ def run(args: argparse.Namespace) -> int:
     _check_combinations(args)
     task = load_task(args.shapes)
     shapes = _chosen(task, args.shape or [ALL])
-    for option in ("serve", "eeprom", "vcd", "gdb"):
+    for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
@@ -239,12 +245,15 @@ def _closely(emulation: Emulation, args: argparse.Namespace) -> Iterator[Callabl
     with (
         _kept_eeprom(emulation, args.eeprom),
         waveforms(emulation, args.vcd, args.pin) as waves,
+        frames(emulation, args.frames) as log,
         debuggers(emulation, args.gdb) as ports,
     ):
 
         def on_slice() -> None:
             if waves is not None:
                 waves.collect()
+            if log is not None:
+                log.collect()
             attend(ports)
 
         on_slice()

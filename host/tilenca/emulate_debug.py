@@ -1,12 +1,15 @@
-"""`tilenca emulate --vcd` and `--gdb`: looking closely at tiles of a run."""
+"""`tilenca emulate --vcd`, `--frames` and `--gdb`: looking closely at tiles of a run."""
 
+import json
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import TextIO
 
+from tilenca.emulate_faults import SIDE_NAMES
 from tilenca.emulation import Emulation
-from tilenca.emulator import Waveforms
+from tilenca.emulator import SOUTH, Waveforms, WireTap
 from tilenca.emulator_gdb import GdbPort
 from tilenca.errors import UsageError
 from tilenca.streams import warn
@@ -51,6 +54,49 @@ def waveforms(emulation: Emulation, path: Path | None, pins: Sequence[str]) -> I
             waves.write(path)
         except OSError as error:
             raise UsageError(f"{path}: {error.strerror}; give --vcd a file that can be written") from error
+
+
+class FrameLog:
+    """Writes what passes on each cable: a JSON object for every frame, in order of their ends."""
+
+    def __init__(self, emulation: Emulation, file: TextIO) -> None:
+        """Looks at all cables from now on; a side without USART is read at its cable's other end."""
+        self._file = file
+        self._taps: list[tuple[int, int, WireTap]] = []
+        for cable in emulation.cables:
+            for tile, side, other, other_side in (cable, (*cable[2:], *cable[:2])):
+                if side == SOUTH:
+                    tap = emulation.array[other].tap(other_side, receiving=True)
+                else:
+                    tap = emulation.array[tile].tap(side)
+                self._taps.append((tile, side, tap))
+
+    def collect(self) -> None:
+        """Writes the frames that have ended since the last call."""
+        seen = []
+        for tile, side, tap in self._taps:
+            for frame in tap.read_frames():
+                seen.append((frame.time_s, tile + 1, SIDE_NAMES[side], frame.data.hex()))
+        for time_s, tile, name, data in sorted(seen):
+            line = {"time": round(time_s, 6), "tile": tile, "side": name, "frame": data}
+            self._file.write(json.dumps(line) + "\n")
+
+
+@contextmanager
+def frames(emulation: Emulation, path: Path | None) -> Iterator[FrameLog | None]:
+    """Writes the frames on all cables to a file while the block runs.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+    if path is None:
+        yield None
+        return
+    try:
+        with path.open("w", encoding="ascii") as file:
+            yield FrameLog(emulation, file)
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give --frames a file that can be written") from error
 
 
 @contextmanager

@@ -119,7 +119,7 @@ class Emulation:
         draw = random.Random(f"{conditions.seed} {shape.name}")
         self.ppm = [draw.uniform(-conditions.ppm, conditions.ppm) for _ in range(count)]
         self.switch_on_s = [draw.uniform(0.0, conditions.boot_spread_s) for _ in range(count)]
-        links = cables(shape)
+        self.cables = links = cables(shape)
         self.array = Array(
             elf, count, links, self.ppm, self.switch_on_s, conditions.bootloader, conditions.threads
         )

@@ -21,7 +21,7 @@ from pathlib import Path
 from types import TracebackType
 
 from tilenca.emulator_library import LIBRARY, check, last_error, library
-from tilenca.emulator_probe import Edge, PinProbe, Waveforms, WireByte, WireTap
+from tilenca.emulator_probe import Edge, PinProbe, Waveforms, WireByte, WireFrame, WireTap
 from tilenca.emulator_tile import (
     DATA_SPACE,
     EEPROM_BYTES,
@@ -36,7 +36,7 @@ from tilenca.errors import TilencaError, UsageError, image_error
 __all__ = [
     "EAST", "EEPROM_BYTES", "LIBRARY", "NORTH", "SOUTH", "WEST", "Array", "DisplayChange", "Edge",
     "EmulatedTile", "FaultCounts", "Link", "LinkFault", "Mark", "PinProbe", "ResetCause", "Stack",
-    "Waveforms", "WireByte", "WireTap",
+    "Waveforms", "WireByte", "WireFrame", "WireTap",
 ]  # fmt: skip
 
 NORTH, EAST, SOUTH, WEST = range(4)

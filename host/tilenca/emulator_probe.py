@@ -43,6 +43,19 @@ class WireByte:
     framing_error: bool
 
 
+@dataclass(frozen=True)
+class WireFrame:
+    """What stood between two delimiters on a wire.
+
+    Attributes:
+        time_s: when its closing delimiter's stop bit was, in seconds since the array began.
+        data: the bytes, without delimiters.
+    """
+
+    time_s: float
+    data: bytes
+
+
 class PinProbe:
     """The edges of one pin since it was made. Made by `EmulatedTile.probe`."""
 
@@ -90,14 +103,14 @@ class WireTap:
             seen += [WireByte(times[i], values[i], bool(errors[i])) for i in range(count)]
         return seen
 
-    def read_frames(self, delimiter: int = 0) -> list[bytes]:
+    def read_frames(self, delimiter: int = 0) -> list[WireFrame]:
         """The frames completed since the last call: what stands between two delimiters, and is not empty."""
         frames = []
         for byte in self.read():
             if byte.value != delimiter:
                 self._frame.append(byte.value)
             elif self._frame:
-                frames.append(bytes(self._frame))
+                frames.append(WireFrame(byte.time_s, bytes(self._frame)))
                 self._frame.clear()
         return frames
 

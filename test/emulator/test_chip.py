@@ -131,10 +131,6 @@ def test_an_external_reset_says_so_and_keeps_sram(avr: Compile) -> None:
         ("TWAR = 0x42;", "TWI as slave (TWAR): nobody addresses it"),
         ("OSCCAL = 0x70;", "oscillator calibration (OSCCAL)"),
         ("OCDR = 1;", "on-chip debug register (OCDR)"),
-        (
-            "TCCR0A = 0x83; TCCR0B = 1; TCCR1A = 0x09; TCCR1B = 1;",
-            "two peripherals drive one pin (output compare modulator): the later one does",
-        ),
     ],
 )
 def test_each_thing_not_modelled_has_its_name(avr: Compile, source: str, warning: str) -> None:

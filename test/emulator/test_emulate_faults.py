@@ -148,6 +148,25 @@ def test_waveforms_of_chosen_pins_are_written(capsys: pytest.CaptureFixture[str]
     assert path.read_text().count("$var") == 5 * 4
 
 
+def test_frames_on_every_cable_are_written_both_ways(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "frames.jsonl"
+    document = report(capsys, *SECONDS, "--frames", path)
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    assert set(lines[0]) == {"time", "tile", "side", "frame"}
+    assert [line["time"] for line in lines] == sorted(line["time"] for line in lines)
+    for tile in document["tiles"]:
+        neighbours = 1 if tile["id"] in (1, 5) else 2
+        sent = [line for line in lines if line["tile"] == tile["id"]]
+        assert {line["side"] for line in sent} == {
+            side for side, there in (("N", tile["id"] > 1), ("S", tile["id"] < 5)) if there
+        }
+        # Of four sides each frame is counted once; one may be on its way.
+        assert len(sent) in range(tile["frames"]["sent"] // 4 * neighbours - 2, tile["frames"]["sent"])
+    assert len({line["frame"] for line in lines}) > 50
+
+
 @pytest.mark.parametrize(
     ("options", "fact"),
     [
@@ -158,6 +177,7 @@ def test_waveforms_of_chosen_pins_are_written(capsys: pytest.CaptureFixture[str]
         (("--gdb", "x"), "--gdb x: not a tile and a port"),
         (("--vcd", "/nowhere/x.vcd", "--seconds", "0.01"), "/nowhere/x.vcd: No such file or directory; give"),
         (("--vcd", "x", "--shape", "4"), "--vcd needs one shape, got 2"),
+        (("--frames", "/nowhere/x", "--seconds", "0.01"), "/nowhere/x: No such file or directory; give"),
         (("--threads", "0"), "'0' is not a whole number from 1"),
     ],
 )

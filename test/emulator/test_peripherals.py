@@ -94,6 +94,35 @@ def test_a_compare_output_is_a_waveform_for_whoever_looks(
     assert {round(fall - rise) for rise, fall in zip(rises, falls, strict=False)} == {high}
 
 
+def share_of_time_high(array: Array, port: str, bit: int, seconds: float) -> float:
+    probe = array[0].probe(port, bit)
+    level, since_s, high_s = probe.level, array.time_s, 0.0
+    end_s = since_s + seconds
+    array.run(seconds)
+    for edge in probe.read():
+        high_s += (min(edge.time_s, end_s) - since_s) * level
+        level, since_s = edge.level, edge.time_s
+    return (high_s + max(0.0, end_s - since_s) * level) / seconds
+
+
+@pytest.mark.parametrize(("port_bit", "share"), [(0, 0.5 * 0.25), (1, 1 - 0.5 * 0.75)])
+def test_two_timers_modulate_one_pin(avr: Compile, port_bit: int, share: float) -> None:
+    source = f"""
+    int main(void) {{
+        DDRB = 0x80; PORTB = {port_bit << 7};
+        OCR0A = 63; TCCR0A = 0x83; TCCR0B = 1;                          /* a quarter of 256 cycles */
+        TCCR1A = 0x0A; TCCR1B = 0x18; ICR1 = 4095; OCR1C = 2047; TCCR1B = 0x19;     /* half of 4096 */
+        _delay_ms(5);
+        TCCR1A = 0x02;                                                  /* timer 0 alone */
+        for (;;) {{ }}
+    }}"""
+    array = Array(avr(source))
+    array.run(0.001)
+    assert share_of_time_high(array, "B", 7, 8 * 4096 / 16e6) == pytest.approx(share, abs=0.01)
+    array.run(0.004)
+    assert share_of_time_high(array, "B", 7, 256 * 16 / 16e6) == pytest.approx(0.25, abs=0.01)
+
+
 def test_a_pin_change_interrupt_follows_a_compare_output(avr: Compile) -> None:
     source = """
     ISR(PCINT0_vect) { result16[0]++; }

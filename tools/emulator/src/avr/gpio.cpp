@@ -90,7 +90,11 @@ uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t la
     const auto index = static_cast<uint8_t>(&port - ports_.data());
     for (uint8_t bit = 0; port.taken >> bit != 0; bit++) {
         if (port.sources[bit] != nullptr && (port.taken >> bit & 1) != 0) {
-            const bool high = port.sources[bit]->pin_level({index, bit}, cycle);
+            bool high = port.sources[bit]->pin_level({index, bit}, cycle);
+            if (port.modulators[bit] != nullptr) {
+                const bool other = port.modulators[bit]->pin_level({index, bit}, cycle);
+                high = (latch >> bit & 1) != 0 ? high || other : high && other;
+            }
             driven = static_cast<uint8_t>((driven & ~(1 << bit)) | high << bit);
         }
     }
@@ -129,22 +133,30 @@ void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycl
     Port& port = ports_[pin.port];
     update(port, cycle);
     if (as_output) {
-        if ((port.taken & bit_of(pin)) != 0 && port.sources[pin.bit] != source) {
-            core_.warnings.once(
-                "two peripherals drive one pin (output compare modulator): the later one does");
-        }
         port.taken |= bit_of(pin);
-        port.sources[pin.bit] = source;
+        drive_again(pin, source);
     }
     output_changes_++;
     update(port, cycle);
 }
 
-void Gpio::release(PinId pin, uint64_t cycle) {
+void Gpio::drive_again(PinId pin, PinSource* source) {
+    Port& port = ports_[pin.port];
+    PinSource*& first = port.sources[pin.bit];
+    (first == nullptr || first == source ? first : port.modulators[pin.bit]) = source;
+}
+
+void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
     Port& port = ports_[pin.port];
     const bool was_silent = (port.taken & bit_of(pin)) != 0 && port.sources[pin.bit] == nullptr;
-    port.taken &= static_cast<uint8_t>(~bit_of(pin));
-    port.sources[pin.bit] = nullptr;
+    PinSource *&first = port.sources[pin.bit], *&second = port.modulators[pin.bit];
+    if (second != nullptr && source != nullptr) { // the other one stays
+        first = first == source ? second : first;
+    } else {
+        port.taken &= static_cast<uint8_t>(~bit_of(pin));
+        first = nullptr;
+    }
+    second = nullptr;
     output_changes_++;
     update(port, cycle);
     if (was_silent) {
@@ -211,6 +223,9 @@ void Gpio::tell_sources() {
             if (port.sources[bit] != nullptr) {
                 port.sources[bit]->observers_changed();
             }
+            if (port.modulators[bit] != nullptr) {
+                port.modulators[bit]->observers_changed();
+            }
         }
     }
 }
@@ -239,6 +254,7 @@ void Gpio::reset(uint64_t cycle) {
         port.taken = port.interrupting = port.watched_in = port.watched = 0;
         port.watchers.fill(nullptr);
         port.sources.fill(nullptr);
+        port.modulators.fill(nullptr);
         update(port, cycle);
     }
     core_.schedule.cancel(Slot::Lines);
@@ -258,6 +274,7 @@ void Gpio::state(Archive& archive) {
         }
         if (archive.loading()) { // they enter themselves again
             port.sources.fill(nullptr);
+            port.modulators.fill(nullptr);
             port.watchers.fill(nullptr);
         }
     }

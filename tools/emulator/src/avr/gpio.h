@@ -84,9 +84,10 @@ class Gpio : public Peripheral {
     // A USART or timer takes a pin from its port, or gives it back (null). A USART's transmitter needs no
     // source: nobody reads its pin back.
     void take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycle);
-    void release(PinId pin, uint64_t cycle);
+    // source: who gives it back, where two may have it.
+    void release(PinId pin, uint64_t cycle, const PinSource* source = nullptr);
     // A source enters itself again after its state has been loaded.
-    void drive_again(PinId pin, PinSource* source) { ports_[pin.port].sources[pin.bit] = source; }
+    void drive_again(PinId pin, PinSource* source);
 
     bool level(PinId pin, uint64_t cycle);
     // As of when somebody looked last.
@@ -112,6 +113,8 @@ class Gpio : public Peripheral {
         uint8_t watched_in = 0;   // inputs on a line of which the next edge must be known
         uint8_t has_lines = 0;
         std::array<PinSource*, 8> sources{};
+        // The output compare modulator: a second source; PORT decides between AND (0) and OR (1).
+        std::array<PinSource*, 8> modulators{};
         std::array<std::vector<EdgeListener*>, 8> listeners{};
         std::array<PinWatcher*, 8> watchers{};
         std::array<std::unique_ptr<Line>, 8> lines;

@@ -37,7 +37,7 @@ void Timer::apply_outputs(uint64_t cycle) {
             if (driving_[i]) {
                 gpio_.take_over(pins_[i], this, true, cycle);
             } else {
-                gpio_.release(pins_[i], cycle);
+                gpio_.release(pins_[i], cycle, this);
             }
         }
     }
