@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from tilenca import variants
 from tilenca.drawings import Drawings
 from tilenca.recipes import Recipe
-from tilenca.shapes import Shape
+from tilenca.shapes import UNKNOWN, Shape
 from tilenca.sizes import Size, Sizes
 from tilenca.stretch import Rows
-from tilenca.variants import UNKNOWN, Known
+from tilenca.variants import Known
 
 DAMAGED = " damaged"
 

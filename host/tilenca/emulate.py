@@ -6,9 +6,9 @@ import os
 import stat
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,11 @@ from rich.live import Live
 
 from tilenca import paths
 from tilenca.arguments import count, number, whole
+from tilenca.emulate_debug import attend, debuggers, frames, waveforms
+from tilenca.emulate_faults import parse as parse_fault
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
 from tilenca.emulate_view import mismatch, take_picture, verdict
-from tilenca.emulation import Conditions, Emulation, firmware_settings
+from tilenca.emulation import Conditions, Emulation, firmware_settings, save_eeprom
 from tilenca.errors import UsageError, image_error
 from tilenca.picture import Picture, beside
 from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
@@ -40,6 +42,7 @@ MAX_PPM = 100_000.0
 MAX_BOOT_SPREAD_S = 3600.0
 SETTLING_S = 0.001
 MAX_SECONDS = 86_400.0
+MAX_THREADS = 64
 
 # Lays out one shape in tiles.
 LayOut = Callable[[Shape], Emulation]
@@ -95,6 +98,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="switched on within 0..S seconds (1.0)",
     )
     add("--seed", type=int, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
+    add(
+        "--fault",
+        action="append",
+        type=parse_fault,
+        default=[],
+        metavar="SPEC",
+        help="what goes wrong, where and when, such as loss=0.1 or cut@3-4:2-5; again for more (see "
+        "docs/EMULATOR.md)",
+    )
+    add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")
+    add("--eeprom", type=Path, metavar="DIR", help="one shape: load and keep each tile's EEPROM in DIR")
+    add("--vcd", type=Path, metavar="F", help="one shape: write the waveforms of its cables to F")
+    add(
+        "--pin",
+        action="append",
+        default=[],
+        metavar="TILE:PIN",
+        help="with --vcd: this pin, such as 3:H1, instead; again for more",
+    )
+    add(
+        "--frames",
+        type=Path,
+        metavar="F",
+        help="one shape: write the frames on its cables to F, as JSON lines",
+    )
+    add(
+        "--gdb",
+        action="append",
+        default=[],
+        metavar="TILE[:PORT]",
+        help="one shape: wait for avr-gdb at this tile; again for more",
+    )
     add("--record", type=Path, metavar="F", help="write all telemetry to F, one JSON object per line")
     look = parser.add_mutually_exclusive_group()
     look.add_argument("--json", action="store_true", help="one JSON document on stdout")
@@ -111,8 +146,9 @@ def run(args: argparse.Namespace) -> int:
     _check_combinations(args)
     task = load_task(args.shapes)
     shapes = _chosen(task, args.shape or [ALL])
-    if args.serve is not None and len(shapes) != 1:
-        raise UsageError(f"--serve needs one shape, got {len(shapes)}; give --shape NAME")
+    for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
+        if getattr(args, option) and len(shapes) != 1:
+            raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
     defaults = firmware_settings(args.elf)
     conditions = Conditions(
@@ -123,6 +159,9 @@ def run(args: argparse.Namespace) -> int:
         boot_spread_s=args.boot_spread,
         seed=args.seed,
         bootloader=None if args.serve is None else _bootloader(args.bootloader),
+        faults=tuple(args.fault),
+        threads=args.threads,
+        eeprom=args.eeprom,
     )
 
     def lay_out(shape: Shape) -> Emulation:
@@ -130,15 +169,15 @@ def run(args: argparse.Namespace) -> int:
 
     if args.serve is not None:
         emulation = lay_out(shapes[0])
-        with emulation.array:
-            serve(emulation, args.serve, args.seconds, reset_on_open=not args.keep_running)
+        with emulation.array, _closely(emulation, args) as on_slice:
+            serve(emulation, args.serve, args.seconds, not args.keep_running, on_slice)
         return 0
     with ExitStack() as stack:
         record = stack.enter_context(Recorder(args.record, "w")) if args.record else None
         if args.watch:
-            outcomes = [_watch(lay_out, shape, record) for shape in shapes]
+            outcomes = [_watch(args, lay_out, shape, record) for shape in shapes]
         else:
-            outcomes = _run_all(lay_out, shapes, record)
+            outcomes = _run_all(args, lay_out, shapes, record)
     _print(args, outcomes)
     for note in sorted({note for outcome in outcomes for note in outcome.notes}):
         warn(f"tilenca: {note}")
@@ -151,6 +190,8 @@ def _check_combinations(args: argparse.Namespace) -> None:
     for option, given in (("--record", args.record), ("--updates", args.updates)):
         if serving and given is not None:
             raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")
+    if args.pin and args.vcd is None:
+        raise UsageError("--pin does nothing without --vcd; add --vcd FILE or leave it out")
     for option, given in (("--bootloader", args.bootloader), ("--keep-running", args.keep_running or None)):
         if not serving and given is not None:
             raise UsageError(f"{option} does nothing without --serve; add --serve DIR or leave it out")
@@ -199,7 +240,40 @@ def _outcome(emulation: Emulation, started: float) -> Outcome:
     return Outcome(report, take_picture(emulation), verdict(emulation), tuple(notes))
 
 
-def _run_all(lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None) -> list[Outcome]:
+@contextmanager
+def _closely(emulation: Emulation, args: argparse.Namespace) -> Iterator[Callable[[], None]]:
+    """What is looked at besides the tiles' faces; the function is to be called after every slice of time."""
+    with (
+        _kept_eeprom(emulation, args.eeprom),
+        waveforms(emulation, args.vcd, args.pin) as waves,
+        frames(emulation, args.frames) as log,
+        debuggers(emulation, args.gdb) as ports,
+    ):
+
+        def on_slice() -> None:
+            if waves is not None:
+                waves.collect()
+            if log is not None:
+                log.collect()
+            attend(ports)
+
+        on_slice()
+        yield on_slice
+
+
+@contextmanager
+def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        if directory is not None:
+            for tile in emulation.array:
+                save_eeprom(tile, directory)
+
+
+def _run_all(
+    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+) -> list[Outcome]:
     """Runs shapes side by side, since they know nothing of each other; results come in their order."""
     stopped = threading.Event()
 
@@ -207,15 +281,16 @@ def _run_all(lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None) 
         started = time.monotonic()
         kept: list[str] = []
 
-        def keep(_: Emulation, heard: list[Heard]) -> None:
+        def keep(heard: list[Heard], on_slice: Callable[[], None]) -> None:
             if stopped.is_set():
                 raise KeyboardInterrupt
+            on_slice()
             if record is not None:
                 kept.extend(_record_line(shape, line) for line in heard)
 
         emulation = lay_out(shape)
-        with emulation.array:
-            emulation.run(keep)
+        with emulation.array, _closely(emulation, args) as on_slice:
+            emulation.run(lambda _, heard: keep(heard, on_slice))
             return _outcome(emulation, started), kept
 
     outcomes = []
@@ -235,16 +310,17 @@ def _run_all(lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None) 
     return outcomes
 
 
-def _watch(lay_out: LayOut, shape: Shape, record: Recorder | None) -> Outcome:
+def _watch(args: argparse.Namespace, lay_out: LayOut, shape: Shape, record: Recorder | None) -> Outcome:
     """Runs one shape in step with the wall clock, or slower, and shows it."""
     console = Console()
     started = time.monotonic()
     emulation = lay_out(shape)
     told = [0] * len(emulation.array)
-    with emulation.array, ExitStack() as stack:
+    with emulation.array, _closely(emulation, args) as on_slice, ExitStack() as stack:
         live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
 
         def show(running: Emulation, heard: list[Heard]) -> None:
+            on_slice()
             if record is not None:
                 record.write(_record_line(shape, line) for line in heard)
             if live is not None:

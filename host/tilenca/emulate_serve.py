@@ -8,6 +8,7 @@ import os
 import select
 import time
 import tty
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -72,8 +73,21 @@ class ServedTile:
         os.close(self._master)
 
 
-def serve(emulation: Emulation, directory: Path, seconds: float | None, reset_on_open: bool) -> None:
+def serve(
+    emulation: Emulation,
+    directory: Path,
+    seconds: float | None,
+    reset_on_open: bool,
+    on_slice: Callable[[], None] = lambda: None,
+) -> None:
     """Serves all tiles until `seconds` have passed on the wall clock, or for ever.
+
+    Args:
+        emulation: the tiles.
+        directory: where to put the links; it is made, and removed again, if it is not there.
+        seconds: for how long; None: until it is interrupted.
+        reset_on_open: whether opening a port resets its tile, as DTR does on a Mega.
+        on_slice: called after every few milliseconds.
 
     Raises:
         UsageError: the directory cannot be used, or another run serves tiles there.
@@ -95,7 +109,7 @@ def serve(emulation: Emulation, directory: Path, seconds: float | None, reset_on
             served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
             stack.callback(served[-1].close)
         warn(f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it")
-        _keep_step(emulation, served, seconds)
+        _keep_step(emulation, served, seconds, on_slice)
 
 
 def _lock(directory: Path) -> int:
@@ -115,12 +129,15 @@ def _lock(directory: Path) -> int:
     return descriptor
 
 
-def _keep_step(emulation: Emulation, served: list[ServedTile], seconds: float | None) -> None:
+def _keep_step(
+    emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
+) -> None:
     started = last = time.monotonic()
     while seconds is None or last - started < seconds:
         time.sleep(max(0.0, last + STEP_S - time.monotonic()))
         now = time.monotonic()
-        emulation.array.run(min(now - last, MAX_LAG_S))
+        emulation.pass_time(min(now - last, MAX_LAG_S))
+        on_slice()
         last = now
         for port in served:
             port.exchange()

@@ -2,6 +2,7 @@
 
 from tilenca.emulation import Emulation
 from tilenca.picture import Picture
+from tilenca.shapes import UNKNOWN
 
 
 def take_picture(emulation: Emulation) -> Picture:
@@ -12,7 +13,8 @@ def take_picture(emulation: Emulation) -> Picture:
 
 def verdict(emulation: Emulation) -> str:
     """One line: whether the tiles are right, and since when."""
-    name, count = emulation.shape.name, len(emulation.array)
+    name, standing = emulation.shape.name, [tile for tile in emulation.array if tile.powered]
+    count = len(standing)
     agreed_s = emulation.agreed_at_s()
     if agreed_s is not None:
         tiles = "the tile shows" if count == 1 else f"all {count} tiles show"
@@ -22,7 +24,7 @@ def verdict(emulation: Emulation) -> str:
         )
     wrong = [
         f"tile {tile.index + 1} {emulation.shown(tile) or 'nothing'}"
-        for tile in emulation.array
+        for tile in standing
         if emulation.shown(tile) != emulation.shape.label
     ]
     model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""
@@ -33,8 +35,9 @@ def verdict(emulation: Emulation) -> str:
 def mismatch(emulation: Emulation) -> str | None:
     """What to do if wrong tiles run a model of other shapes; None if nothing says that they do."""
     task, hello = emulation.task, emulation.hello
-    foreign = {emulation.shown(tile) for tile in emulation.array} - {"", *task.labels}
-    if hello is None or emulation.all_right or (hello.classes == len(task.labels) and not foreign):
+    foreign = {emulation.shown(tile) for tile in emulation.array} - {"", UNKNOWN, *task.labels}
+    classes = len(task.labels), len({*task.labels, UNKNOWN})
+    if hello is None or emulation.all_right or (hello.classes in classes and not foreign):
         return None
     return (
         f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)}); export "

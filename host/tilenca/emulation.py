@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tilenca.emulator import EAST, SOUTH, Array, EmulatedTile, Link
-from tilenca.errors import TilencaError
+from tilenca.emulate_faults import Faults, FaultSpec
+from tilenca.emulator import EAST, EEPROM_BYTES, SOUTH, Array, EmulatedTile, Link
+from tilenca.errors import TilencaError, UsageError
 from tilenca.glyphs import label_of_glyph
 from tilenca.protocol import HelloSentence, LinkSentence, Settings, TileSentence, settings_block
 from tilenca.shapes import Shape, Task, opposite
@@ -24,6 +25,7 @@ PATIENCE = 1.5
 PATIENCE_S = 3.0
 # The sentence that tells of an update follows the display by less than this, and the next update later.
 TELLING_MS = 5.0
+EEPROM_SUFFIX = ".eeprom"
 FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
@@ -39,6 +41,9 @@ class Conditions:
         boot_spread_s: tiles are switched on at times uniform in 0..boot_spread_s.
         seed: decides both; each shape draws its own.
         bootloader: image that tiles start in; None: none.
+        faults: what goes wrong.
+        threads: how many share the work; they change nothing else.
+        eeprom: directory with an EEPROM's contents for each tile that has a file there; None: none.
     """
 
     seconds: float | None = None
@@ -48,6 +53,9 @@ class Conditions:
     boot_spread_s: float = 1.0
     seed: int = 0
     bootloader: Path | None = None
+    faults: tuple[FaultSpec, ...] = ()
+    threads: int = 1
+    eeprom: Path | None = None
 
 
 @dataclass
@@ -104,18 +112,26 @@ class Emulation:
 
         Raises:
             BuildError, UsageError: the image cannot be used, or the emulator is not built.
+            UsageError: a fault is of a tile or cable that there is not, or an EEPROM file cannot be used.
         """
         self.task, self.shape, self.conditions = task, shape, conditions
         count = len(shape.cells)
         draw = random.Random(f"{conditions.seed} {shape.name}")
         self.ppm = [draw.uniform(-conditions.ppm, conditions.ppm) for _ in range(count)]
         self.switch_on_s = [draw.uniform(0.0, conditions.boot_spread_s) for _ in range(count)]
-        self.array = Array(elf, count, cables(shape), self.ppm, self.switch_on_s, conditions.bootloader)
+        self.cables = links = cables(shape)
+        self.array = Array(
+            elf, count, links, self.ppm, self.switch_on_s, conditions.bootloader, conditions.threads
+        )
+        self._faults = Faults(self.array, links, conditions.seed)
+        for spec in conditions.faults:
+            self._faults.add(spec)
         self.period_ms = conditions.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [_Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # what the firmware says of itself, the same from every tile
-        if self.period_ms is not None:
-            for tile in self.array:
+        for tile in self.array:
+            kept = conditions.eeprom and load_eeprom(tile, conditions.eeprom)
+            if self.period_ms is not None and (not kept or conditions.period_ms is not None):
                 updates = defaults.updates if defaults else 0
                 tile.write_eeprom(0, settings_block(tile.index + 1, self.period_ms, updates))
 
@@ -125,8 +141,18 @@ class Emulation:
         Raises:
             TilencaError: a tile stopped at a fault.
         """
-        self.array.run(seconds)
+        self.pass_time(seconds)
         return self.listen()
+
+    def pass_time(self, seconds: float) -> None:
+        """Runs on, and lets happen what goes wrong meanwhile.
+
+        Raises:
+            TilencaError: a tile stopped at a fault of its program.
+        """
+        for tile in self._faults.run(seconds):
+            self._voices[tile].reports.clear()  # what it said in its life before counts no more
+            self.switch_on_s[tile] = self._faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
         """What the tiles have said since the last call, in order of time; ports are called `tile-01`, ..."""
@@ -150,7 +176,7 @@ class Emulation:
         """Whether it has run for as long as its conditions ask."""
         if self.conditions.seconds is not None:
             return self.array.time_s >= self.conditions.seconds
-        return min(map(self._updates, range(len(self.array)))) >= self.conditions.updates
+        return min(map(self._updates, self._standing()), default=0) >= self.conditions.updates
 
     def run(self, on_slice: Callable[["Emulation", list[Heard]], None]) -> None:
         """Runs until done, and calls `on_slice` after every slice of it.
@@ -161,7 +187,7 @@ class Emulation:
         limit_s = self._limit_s()
         while not self.done():
             if self.array.time_s > limit_s:
-                slowest = min(range(len(self.array)), key=self._updates)
+                slowest = min(self._standing(), key=self._updates, default=0)
                 raise TilencaError(
                     f"shape '{self.shape.name}': tile {slowest + 1} told of {self._updates(slowest)} updates "
                     f"in {limit_s:.1f} s, {self.conditions.updates} were asked for; give --seconds to run on"
@@ -177,6 +203,10 @@ class Emulation:
         expected_s = self.conditions.updates * (self.period_ms or 0) / 1000
         return self.conditions.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
 
+    def _standing(self) -> list[int]:
+        """The tiles that have power; no more is asked of the others."""
+        return [tile.index for tile in self.array if tile.powered]
+
     def _updates(self, index: int) -> int:
         reports = self._voices[index].reports
         return reports[-1].updates if reports else 0
@@ -191,15 +221,16 @@ class Emulation:
 
     @property
     def all_right(self) -> bool:
-        """Whether every tile shows the shape's label now."""
-        return all(self.shown(tile) == self.shape.label for tile in self.array)
+        """Whether every tile that has power shows the shape's label now."""
+        standing = self._standing()
+        return bool(standing) and all(self.shown(self.array[i]) == self.shape.label for i in standing)
 
     def agreed_at_s(self) -> float | None:
         """Time from the last switch-on to when all tiles were right to stay so; None if they are not."""
         if not self.all_right:
             return None
         since = []
-        for tile in self.array:
+        for tile in map(self.array.__getitem__, self._standing()):
             right_from_s = 0.0
             was_right = False
             for change in tile.display_changes:
@@ -217,7 +248,8 @@ class Emulation:
             return None
         moment_s = agreed_s + max(self.switch_on_s)
         done = []
-        for index, voice in enumerate(self._voices):
+        for index in self._standing():
+            voice = self._voices[index]
             uptime_ms = (moment_s - self.switch_on_s[index]) * 1000 * (
                 1 + self.ppm[index] * 1e-6
             ) + TELLING_MS
@@ -252,6 +284,45 @@ class Emulation:
             "updates": self._updates(tile.index),
             "frames": {counter: sum(getattr(link, counter) for link in links) for counter in FRAME_COUNTERS},
         }
+
+
+def load_eeprom(tile: EmulatedTile, directory: Path) -> bool:
+    """Puts a tile's file into its EEPROM; False if it has none.
+
+    Raises:
+        UsageError: the file cannot be read, or is not as long as the EEPROM.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        contents = path.read_bytes()
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give --eeprom a directory of such files") from error
+    if len(contents) != EEPROM_BYTES:
+        raise UsageError(
+            f"{path}: {len(contents)} bytes, an EEPROM has {EEPROM_BYTES}; delete it to begin anew"
+        )
+    tile.write_eeprom(0, contents)
+    return True
+
+
+def save_eeprom(tile: EmulatedTile, directory: Path) -> None:
+    """Writes a tile's EEPROM to its file; all of it or nothing.
+
+    Raises:
+        UsageError: the directory cannot be written.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        fresh = path.with_suffix(".new")
+        fresh.write_bytes(tile.read_eeprom())
+        fresh.replace(path)
+    except OSError as error:
+        raise UsageError(
+            f"{path}: {error.strerror}; give --eeprom a directory that can be written"
+        ) from error
 
 
 def port_name(index: int) -> str:

@@ -11,10 +11,10 @@ import numpy as np
 from tilenca import variants
 from tilenca.drawings import Drawings, load_drawings
 from tilenca.recipes import Recipe
-from tilenca.shapes import Shape
+from tilenca.shapes import UNKNOWN, Shape
 from tilenca.sizes import Size, Sizes, size_name
 from tilenca.stretch import Rows
-from tilenca.variants import UNKNOWN, Known
+from tilenca.variants import Known
 
 LARGE = 42  # a drawing with a larger bounding box gets 100 steps to agree, not 60
 VERY_LARGE = 196  # and beyond this 200

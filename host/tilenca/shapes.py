@@ -21,6 +21,7 @@ from tilenca.stretch import stretch
 
 TILE = "#"
 EMPTY = ".", " "
+UNKNOWN = "-"  # the label of what belongs to no class
 
 _HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
 _GRID = re.compile(r"""\s*grid\s*=\s*(?P<quotes>\"{3}|'{3})?(?P<row>.*?)\s*$""")

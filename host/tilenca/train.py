@@ -18,9 +18,10 @@ from tilenca.errors import InterruptedRunError, UsageError
 from tilenca.exam import aims_of, set_exam
 from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
 from tilenca.recipes import RECIPES, Recipe, find_recipe
+from tilenca.shapes import UNKNOWN
 from tilenca.sizes import Sizes
 from tilenca.streams import warn
-from tilenca.variants import UNKNOWN, Known
+from tilenca.variants import Known
 
 if TYPE_CHECKING:
     from tilenca.seedrun import Job

@@ -11,7 +11,6 @@ from tilenca.shapes import STEPS, cells_of, connected
 from tilenca.stretch import Rows, smallest
 
 Cell = tuple[int, int]
-UNKNOWN = "-"  # the label of what belongs to no class
 GIVE_UP = 300  # draws in a row that bring nothing new
 
 

@@ -1,8 +1,10 @@
 """Many tiles: lockstep, cables, switching on, and the same results whatever the slicing."""
 
+import pytest
 from conftest import Compile
 
 from tilenca.emulator import EAST, WEST, Array, EmulatedTile
+from tilenca.errors import UsageError
 
 # Passes on what comes from the west, plus one, to the east; the first tile of a row starts it.
 BUCKET_BRIGADE = """
@@ -105,3 +107,20 @@ def test_the_board_is_wired_as_the_pin_map_says(avr: Compile) -> None:
     assert array[0].segments == 0b0001_1100
     assert array[0].leds == (False, True, False, True)
     assert array[0].display_changes[0].segments == 0b1000_0011
+
+
+def test_what_is_closed_or_gone_says_so(avr: Compile) -> None:
+    array = build(avr(BUCKET_BRIGADE))
+    before = array.save()
+    added = array.add_tile()
+    array.restore(before)
+    with pytest.raises(UsageError, match="it is no more"):
+        added.read_serial()
+    with pytest.raises(UsageError, match="no more"):
+        added.mark("main")
+    probe = array[0].probe("H", 3)
+    array.close()
+    for use in (lambda: array.run(1), lambda: array[0].pc, lambda: array.time_s, probe.read, array.save):
+        with pytest.raises(UsageError, match="the array is closed"):
+            use()
+    array.close()  # once more does no harm

@@ -92,18 +92,18 @@ def test_what_is_not_modelled_warns_once_by_name(avr: Compile) -> None:
     source = """
     int main(void) {
         SPCR = 0; TWBR = 72; ACSR = 0x80; PRR0 = 0; DIDR0 = 255;      /* harmless */
-        for (uint8_t i = 0; i < 3; i++) { SPCR = 0x50; TWCR = 0xA4; }
-        result[0] = SPCR; *(volatile uint8_t *)0x3000 = 1;
+        for (uint8_t i = 0; i < 3; i++) { XMCRA = 0x80; ASSR = 0x20; }
+        result[0] = XMCRA; *(volatile uint8_t *)0x3000 = 1;
         for (;;) { }
     }"""
     array = Array(avr(source))
     array.run(0.001)
     assert array[0].warnings == [
-        "SPI (SPCR)",
-        "TWI (TWCR)",
+        "external memory (XMCRA)",
+        "asynchronous clock of timer 2 (ASSR)",
         "write beyond the end of SRAM (first: address 0x3000)",
     ]
-    assert array[0].read_memory(0x1000, 1) == b"\x50"
+    assert array[0].read_memory(0x1000, 1) == b"\x80"
 
 
 def test_an_external_reset_says_so_and_keeps_sram(avr: Compile) -> None:
@@ -126,30 +126,48 @@ def test_an_external_reset_says_so_and_keeps_sram(avr: Compile) -> None:
 @pytest.mark.parametrize(
     ("source", "warning"),
     [
-        ("PRR0 = 0x80;", "power reduction (PRR0): everything stays on"),
-        ("PRR1 = 0x01;", "power reduction (PRR1): everything stays on"),
-        ("UCSR2A = 0x01;", "USART in multi-processor mode (MPCM): every frame is received"),
-        (
-            "ADCSRA = 0xA7; ADCSRB = 0x03;",
-            "ADC triggered by another event than its own end (ADTS): nothing starts it",
-        ),
-        ("TIMSK4 = 0x20; TCCR4B = 0x01;", "input capture of timer 4: nothing is captured"),
-        ("TCCR5B = 0x42;", "input capture of timer 5: nothing is captured"),
-        ("TCCR3B = 0x07;", "timer 3 clocked from its T pin: stands still"),
-        (
-            "result[0] = boot_signature_byte_get(0);",
-            "signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF",
-        ),
-        (
-            "result[0] = boot_lock_fuse_bits_get(GET_LOCK_BITS);",
-            "signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF",
-        ),
+        ("UCSR2C = 0x46;", "USART in synchronous or SPI mode (UMSEL)"),
+        ("SPCR = 0x40;", "SPI as slave (SPCR): nobody clocks it"),
+        ("TWAR = 0x42;", "TWI as slave (TWAR): nobody addresses it"),
+        ("OSCCAL = 0x70;", "oscillator calibration (OSCCAL)"),
+        ("OCDR = 1;", "on-chip debug register (OCDR)"),
     ],
 )
 def test_each_thing_not_modelled_has_its_name(avr: Compile, source: str, warning: str) -> None:
-    array = Array(avr(f"#include <avr/boot.h>\nint main(void) {{ {source} {source} for (;;) {{ }} }}"))
+    array = Array(avr(f"int main(void) {{ {source} {source} for (;;) {{ }} }}"))
     array.run(0.001)
     assert array[0].warnings == [warning]
+
+
+READ_ROWS = """#include <avr/boot.h>
+int main(void) {
+    result[0] = boot_signature_byte_get(0); result[1] = boot_signature_byte_get(2);
+    result[2] = boot_signature_byte_get(4);
+    result[3] = boot_lock_fuse_bits_get(GET_LOW_FUSE_BITS);
+    result[4] = boot_lock_fuse_bits_get(GET_HIGH_FUSE_BITS);
+    result[5] = boot_lock_fuse_bits_get(GET_EXTENDED_FUSE_BITS);
+    result[6] = boot_lock_fuse_bits_get(GET_LOCK_BITS);
+    result[7] = pgm_read_byte(0);
+    for (;;) { }
+}
+"""
+
+
+def test_a_program_reads_signature_fuses_and_lock_bits(avr: Compile) -> None:
+    array = Array(avr(READ_ROWS))
+    first_byte = array[0].read_flash(0, 1)
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 8) == bytes([0x1E, 0x98, 0x01, 0xFF, 0xD9, 0xFD, 0xFF]) + first_byte
+    array[0].set_fuses(0xEF, 0xD1, 0xFC, 0xFE)
+    array.run(0.001)
+    assert array[0].read_memory(0x1003, 4) == bytes([0xEF, 0xD1, 0xFC, 0xFE])
+
+
+def test_fuses_and_lock_bits_in_an_elf_count(avr: Compile) -> None:
+    marks = "FUSES = {.low = 0xE0, .high = 0xD3, .extended = 0xFC}; LOCKBITS = 0xCF;\n"
+    array = Array(avr("#include <avr/fuse.h>\n#include <avr/lock.h>\n" + marks + READ_ROWS))
+    array.run(0.001)
+    assert array[0].read_memory(0x1003, 4) == bytes([0xE0, 0xD3, 0xFC, 0xCF])
 
 
 # What stands in the boot section is at hand as `boot`; it answers through `result`.
@@ -207,3 +225,158 @@ def test_a_flash_command_that_is_not_carried_out_lapses(avr: Compile, command: s
     assert armed & 1
     assert lapsed == 0
     assert array[0].read_flash(0x8000, 2) == b"\xef\xbe"
+
+
+def test_lock_bits_that_forbid_a_write_stop_the_tile(avr: Compile) -> None:
+    forbidden = "boot_lock_bits_set(_BV(BLB11)); result[6] = 1; boot_page_erase(0x3E000ul);"
+    places = ("-Wl,--section-start=.bootloader=0x3E000", "-Wl,--section-start=.table=0x8000")
+    array = Array(avr(BOOT.replace("CODE", forbidden), "-Wno-unused", *places))
+    with pytest.raises(
+        TilencaError,
+        match=r"tile 1 stopped at 0x3E0[0-9A-F]{2} in boot: SPM at flash address 0x3E000 in the boot "
+        r"section, which lock bits 0xEF forbid",
+    ):
+        array.run(0.02)
+    assert array[0].read_memory(0x1006, 1) == b"\x01"
+
+
+def test_lock_bits_hide_the_boot_section_from_the_application(avr: Compile) -> None:
+    source = """
+    BOOTLOADER_SECTION const uint8_t secret[] = {42};
+    int main(void) {
+        result[0] = pgm_read_byte_far(0x3E000ul); result[1] = pgm_read_byte(0);
+        for (;;) { }
+    }"""
+    array = Array(avr("#include <avr/boot.h>\n" + source, "-Wl,--section-start=.bootloader=0x3E000"))
+    first_byte = array[0].read_flash(0, 1)
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 2) == b"\x2a" + first_byte
+    array[0].set_fuses(lock=0xDF)
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 2) == b"\xff" + first_byte
+
+
+def test_the_boot_section_is_as_large_as_the_fuses_say(avr: Compile) -> None:
+    array = in_boot_section(avr, WRITE_PAGE)
+    array[0].set_fuses(high=0xDD)  # 1024 words, from 0x3F800 on
+    array.run(0.02)
+    assert array[0].warnings[-1] == "SPM outside the boot section (from 0x3F800 on): no effect"
+
+
+def test_a_reset_leads_where_the_fuses_say(avr: Compile) -> None:
+    source = """
+    __attribute__((section(".bootloader"), naked, used)) void boot(void) {
+        asm volatile("ldi r24, 0x5B\\n sts 0x1000, r24\\n 1: rjmp 1b");
+    }
+    int main(void) { result[0] = 1; for (;;) { } }"""
+    array = Array(avr(source, "-Wl,--section-start=.bootloader=0x3F000"))
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 1) == b"\x01"
+    array[0].set_fuses(high=0xDA)  # BOOTRST, 2048 words
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 1) == b"\x5b"
+
+
+@pytest.mark.parametrize(
+    ("source", "function"),
+    [
+        (
+            "__attribute__((noinline)) uint8_t down(uint8_t n) { return down(n + 1) + n; }",
+            "down",
+        ),
+        (
+            "__attribute__((noinline)) uint16_t down(uint16_t n) {"
+            " volatile uint8_t frame[200]; frame[n % 200] = n; return down(n + 1) + frame[0]; }",
+            "down",
+        ),
+    ],
+)
+@pytest.mark.parametrize("data_bytes", [1000, 7000])
+def test_a_stack_that_meets_the_data_stops_the_tile(
+    avr: Compile, source: str, function: str, data_bytes: int
+) -> None:
+    elf = avr(
+        f"volatile uint8_t data[{data_bytes}]; {source}\n"
+        "int main(void) { data[0] = 1; data[1] = down(0); for (;;) { } }",
+        "-O1", "-fno-optimize-sibling-calls", "-Wno-infinite-recursion",
+    )  # fmt: skip
+    array = Array(elf)
+    with pytest.raises(TilencaError, match=rf"in {function}: the stack, grown down to 0x.*, meets the data"):
+        array.run(0.1)
+    assert array[0].stack.floor == 0x200 + data_bytes + data_bytes % 2
+
+
+def test_a_stack_that_meets_the_heap_stops_the_tile(avr: Compile) -> None:
+    source = """
+    #include <stdlib.h>
+    volatile uint8_t *block;
+    __attribute__((noinline)) uint8_t down(uint8_t n) { return down(n + 1) + n; }
+    int main(void) { block = malloc(4000); block[3999] = 1; _delay_us(50); block[0] = down(0); }"""
+    array = Array(avr(source, "-O1", "-fno-optimize-sibling-calls", "-Wno-infinite-recursion"))
+    with pytest.raises(TilencaError, match=r"in down: the stack, grown down to 0x.*, meets the data"):
+        array.run(0.1)
+    assert array[0].stack.floor > 0x200 + 4000
+
+
+# Two tasks that hand over to each other, each on a stack of its own among the data.
+TASKS = """
+static uint8_t stacks[2][300];
+static volatile uint16_t pointers[3], turns[2];
+static volatile uint8_t current;
+__attribute__((naked, noinline)) void swap(volatile uint16_t *save, volatile uint16_t *load) {
+    asm volatile(".irp n, 10,11,12,13,14,15,16,17,28,29\\n push r\\\\n\\n .endr\\n"
+                 "movw r30, r24\\n movw r26, r22\\n"
+                 "in r28, 0x3D\\n in r29, 0x3E\\n st Z, r28\\n std Z+1, r29\\n"
+                 "ld r28, X+\\n ld r29, X\\n" WRITE
+                 ".irp n, 29,28,17,16,15,14,13,12,11,10\\n pop r\\\\n\\n .endr\\n ret\\n");
+}
+__attribute__((noinline)) static uint16_t deep(uint8_t n) { return n ? deep(n - 1) + n : 0; }
+static void task(void) {
+    for (;;) {
+        uint8_t self = current;
+        turns[self] += deep(30) == 465;
+        current = 1 - self;
+        swap(&pointers[self], &pointers[1 - self]);
+    }
+}
+static void prepare(uint8_t n) {
+    uint8_t *top = stacks[n] + sizeof stacks[n] - 1;
+    uint32_t entry = (uint16_t)task;
+    *top-- = entry; *top-- = entry >> 8; *top-- = entry >> 16;
+    pointers[n] = (uint16_t)(top - 10);
+}
+int main(void) { prepare(0); prepare(1); swap(&pointers[2], &pointers[0]); for (;;) { } }
+"""
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        "out 0x3E, r29\\n out 0x3D, r28\\n",  # as compilers do
+        "out 0x3D, r28\\n out 0x3E, r29\\n",  # as FreeRTOS does
+    ],
+)
+def test_tasks_with_stacks_among_the_data_are_left_alone(avr: Compile, write: str) -> None:
+    elf = avr(TASKS.replace("WRITE", f'"{write}"'), "-fno-optimize-sibling-calls", "-O1")
+    array = Array(elf)
+    array.run(0.01)
+    turns = words(array[0].variable("turns"))
+    assert all(turn in range(20, 400) for turn in turns)
+    assert abs(turns[0] - turns[1]) <= 1
+
+
+def test_a_tile_that_was_programmed_anew_has_another_image_s_data(avr: Compile) -> None:
+    code = """
+        boot_page_erase(PAGE); boot_spm_busy_wait(); boot_page_fill(PAGE, 0xBEEF);
+        boot_page_write(PAGE); boot_spm_busy_wait(); boot_rww_enable();
+        for (uint16_t n = 0; n < 2000; n++) asm volatile("push r1");
+        for (uint16_t n = 0; n < 2000; n++) asm volatile("pop r0");
+    """
+    source = (
+        BOOT.replace("CODE", code) + "volatile uint8_t data[7000]; uint8_t keep(void) { return data[0]; }"
+    )
+    places = ("-Wl,--section-start=.bootloader=0x3E000", "-Wl,--section-start=.table=0x8000")
+    array = Array(avr(source, "-Wno-unused", *places))
+    array.run(0.02)
+    assert array[0].stack.most_bytes > 2000
+    assert array[0].stack.floor == 0x200

@@ -1,14 +1,16 @@
 """Loading ELF and Intel HEX files: good ones, wrong ones, damaged ones, and noise."""
 
 import random
+import re
+from contextlib import suppress
 from ctypes import CDLL, c_char, c_char_p, c_double, c_int, c_uint, c_uint64, c_void_p
 from pathlib import Path
 
 import pytest
-from conftest import Compile, run_tool
+from conftest import Compile, hex_record, run_tool
 
 from tilenca.emulator import LIBRARY, Array
-from tilenca.errors import BuildError, UsageError
+from tilenca.errors import BuildError, TilencaError, UsageError
 from tilenca.paths import FIRMWARE_ELF
 
 PROGRAM = "EEMEM uint8_t stored = 0x42; int main(void) { result[0] = 7; for (;;) { } }"
@@ -88,6 +90,74 @@ def test_damaged_images_are_refused_or_loaded_but_never_crash(
             outcomes.add("refused in one line" if "\n" not in str(error) else str(error))
     # Every record of a HEX file has its checksum; most bytes of an ELF file are not checked by anything.
     assert outcomes == ({"loaded", "refused in one line"} if kind == "elf" else {"refused in one line"})
+
+
+def test_hex_records_with_sound_checksums_and_senseless_contents_never_crash(tmp_path: Path) -> None:
+    draw = random.Random(23)
+    victim = tmp_path / "victim.hex"
+    outcomes = set()
+    for _ in range(400):
+        lines = []
+        for _ in range(draw.randrange(1, 8)):
+            kind = draw.choice([0, 0, 0, 0, 2, 4, 4, 3, 5, 1, 6, 255])
+            length = draw.choice([0, 1, 2, 2, 4, 16, 255])
+            data = bytes(draw.choice([0, 1, 3, 4, draw.randrange(256)]) for _ in range(length))
+            lines.append(hex_record(kind, draw.randrange(65536), data))
+        victim.write_text("".join([*lines, ":00000001FF\n"] if draw.random() < 0.8 else lines))
+        try:
+            with Array(victim) as array:
+                array.run(0.0001)
+                outcomes.add("ran")
+        except TilencaError as error:
+            message = str(error)
+            outcomes.add("refused" if re.fullmatch(f"{victim}[^\n]*; [^\n]*", message) else message[:14])
+    assert outcomes == {"tile 1 stopped", "refused"}
+
+
+@pytest.mark.parametrize(
+    ("record", "fact"),
+    [
+        (hex_record(4, 0, b"\x00"), ":1: a record of a kind or length that there is not (4)"),
+        (hex_record(7, 0, b"\x00"), ":1: a record of a kind or length that there is not (7)"),
+        (hex_record(4, 0, b"\x00\x04") + hex_record(0, 0, b"x"), ":2: beyond the 256 KiB of flash"),
+        (hex_record(0, 0, b"x")[:-2] + "0\n", ":1: not a sound Intel HEX record"),
+    ],
+)
+def test_a_hex_file_that_makes_no_sense_names_the_line(tmp_path: Path, record: str, fact: str) -> None:
+    assert fact in refused(tmp_path / "bad.hex", (record + ":00000001FF\n").encode())
+
+
+def test_random_programs_stop_or_run_but_never_crash(tmp_path: Path) -> None:
+    """Noise as a program: whatever it does to registers, stack and peripherals, the emulator lives."""
+    draw = random.Random(5)
+    victim, faults = tmp_path / "noise.hex", set[str]()
+    for _ in range(60):
+        noise = bytes(draw.randrange(256) for _ in range(4096))
+        if draw.random() < 0.5:  # most words of noise are ALU instructions: let more of them reach I/O
+            words = [draw.choice([0x9300, 0x9200, 0xB800, 0xB000, 0x9A00, 0x9800]) for _ in range(2048)]
+            mixed = [
+                word | draw.randrange(0x100)
+                if n % 2
+                else draw.randrange(0x20, 0x140)
+                if words[n - 1] in (0x9300, 0x9200)
+                else word
+                for n, word in enumerate(words)
+            ]
+            noise = b"".join(word.to_bytes(2, "little") for word in mixed)
+        lines = [hex_record(0, start, noise[start : start + 16]) for start in range(0, 4096, 16)]
+        victim.write_text("".join([*lines, ":00000001FF\n"]))
+        with Array(victim, 2, [(0, 1, 1, 3), (0, 0, 1, 2)]) as array:
+            for _ in range(5):
+                with suppress(TilencaError):
+                    array.run(0.002)
+                faults |= {tile.fault for tile in array}
+                array[0].powered = False
+                array[0].powered = True
+            again = array.save()
+            array.restore(again)
+            assert array.save() == again
+    assert len(faults) > 20
+    assert all(re.fullmatch("(tile [12] stopped at 0x[0-9A-F]{5}: .+)?", fault) for fault in faults)
 
 
 def test_arguments_that_do_not_fit_are_refused(avr: Compile) -> None:

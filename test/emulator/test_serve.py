@@ -130,3 +130,72 @@ def test_real_avrdude_programs_a_tile_through_the_stock_bootloader(
         port = os.open(directory / name, os.O_RDWR | os.O_NOCTTY)
         assert read(port, len(greeting)) == greeting
         os.close(port)
+
+
+CHATTER = """
+int main(void) {
+    UBRR0 = 16; UCSR0A = 2; UCSR0B = 0x18;
+    for (uint16_t n = 0;; n++) { while (!(UCSR0A & 0x20)) { } UDR0 = 'a' + n % 26; }
+}
+"""
+
+
+def test_a_reader_that_dies_harms_nobody(avr: Compile, directory: Path) -> None:
+    server = Server(avr(CHATTER), directory)
+    for name in ("tile-01", "tile-02"):
+        with subprocess.Popen(["cat", str(directory / name)], stdout=subprocess.PIPE) as reader:
+            assert reader.stdout is not None
+            assert reader.stdout.read(30)
+            reader.kill()  # in the middle of a flood
+    again = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
+    assert b"abcdefghijklmnopqrstuvwxyz" in read(again, 60)
+    os.close(again)
+    assert server.process.poll() is None
+    assert server.stop() == 130
+
+
+def test_a_reader_that_does_not_read_loses_bytes_and_halts_nobody(avr: Compile, directory: Path) -> None:
+    server = Server(avr(CHATTER), directory)
+    sleeper = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
+    other = os.open(directory / "tile-02", os.O_RDWR | os.O_NOCTTY)
+    read(other, 12_000)  # more than a pseudo-terminal holds
+    assert server.process.poll() is None
+    read(sleeper, 3000)
+    assert b"abcdefghijklmnopqrstuvwxyz" in read(sleeper, 8000)
+    os.close(sleeper)
+    os.close(other)
+    assert server.stop() == 130
+
+
+def test_a_program_that_goes_astray_ends_the_run_with_its_place(avr: Compile, directory: Path) -> None:
+    source = 'int main(void) { _delay_ms(1200); asm volatile(".word 0xFF0F"); for (;;) { } }'
+    server = Server(avr(source), directory, "--bootloader", "none")
+    assert server.process.stderr is not None
+    said = server.process.stderr.read()
+    assert server.process.wait(TIMEOUT_S) == 1
+    assert "tile 1 stopped at 0x" in said
+    assert "in main: illegal instruction" in said
+    assert "Traceback" not in said
+    assert not directory.exists()
+
+
+@pytest.mark.skipif(
+    not STOCK_BOOTLOADER.exists(), reason="the stock bootloader is in Debian's arduino-core-avr"
+)
+def test_two_avrdudes_at_once_program_two_tiles(
+    echo: Server, avr: Compile, directory: Path, tmp_path: Path
+) -> None:
+    options = ("avrdude", "-p", "atmega2560", "-c", "wiring", "-b", "115200", "-D", "-q", "-q")
+    running = []
+    for number in (1, 2):
+        image = tmp_path / f"{number}.hex"
+        run_tool("avr-objcopy", "-O", "ihex", avr(ECHO, f'-DGREETING="number {number} "'), image)
+        words = [*options, "-P", str(directory / f"tile-0{number}"), "-U", f"flash:w:{image}:i"]
+        running.append(subprocess.Popen(words, stderr=subprocess.PIPE, text=True))
+    for process in running:
+        _, err = process.communicate(timeout=TIMEOUT_S)
+        assert process.returncode == 0, err
+    for number in (1, 2):
+        port = os.open(directory / f"tile-0{number}", os.O_RDWR | os.O_NOCTTY)
+        assert read(port, 9) == f"number {number} ".encode()
+        os.close(port)

@@ -12,8 +12,7 @@ from tilenca.drawings import load_training_task
 from tilenca.errors import UsageError
 from tilenca.exam import Aims, aims_of, set_exam
 from tilenca.recipes import RECIPES
-from tilenca.shapes import load_task
-from tilenca.variants import UNKNOWN
+from tilenca.shapes import UNKNOWN, load_task
 
 L_SHAPE = '[[shape]]\nlabel = "L"\ngrid = """\n#.\n##\n"""\n'
 FULL = replace(RECIPES["full"], stretch=1.5)

@@ -1,42 +1,54 @@
-#include "capi.h"
-
-#include "array/array.h"
+// The array's part of the C interface.
+#include "capi_private.h"
 
 #include <algorithm>
 #include <cstring>
 
 using tilenca::Array;
-
-struct tilenca_array {
-    Array array;
-    std::vector<std::string> faults; // what tilenca_tile_fault gives out must live on
-};
+using tilenca::capi::fail;
 
 namespace {
 
 thread_local std::string last_error;
 
-bool find_pin(char port, unsigned bit, tilenca::avr::PinId* pin) {
-    if (port < 'A' || port > 'L' || port == 'I' || bit > 7) {
-        last_error = "no pin P" + std::string(1, port) + std::to_string(bit) +
-                     "; ports are A to L without I, bits 0 to 7";
-        return false;
-    }
-    *pin = {tilenca::avr::port_index(port), static_cast<uint8_t>(bit)};
-    return true;
+tilenca::Clock clock_of(double ppm, double switch_on_s) {
+    return tilenca::Clock(ppm * 1e-6, 0, switch_on_s * tilenca::kTicksPerSecond);
 }
 
-int copy_out(const uint8_t* from, unsigned limit, unsigned address, uint8_t* bytes, unsigned count) {
-    if (address > limit || count > limit - address) {
-        last_error = "address " + std::to_string(address) + " + " + std::to_string(count) + " ends beyond " +
-                     std::to_string(limit);
-        return -1;
+tilenca::avr::Fuses fuses_of(const tilenca::Image& image, bool with_bootloader) {
+    using tilenca::avr::Fuses;
+    Fuses fuses = with_bootloader ? Fuses::of_mega_with_bootloader() : Fuses{};
+    if (with_bootloader) {
+        return fuses;
     }
-    std::memcpy(bytes, from + address, count);
-    return 0;
+    uint8_t* const bytes[3] = {&fuses.low, &fuses.high, &fuses.extended};
+    for (size_t i = 0; i < std::min<size_t>(3, image.fuses.size()); i++) {
+        *bytes[i] = image.fuses[i];
+    }
+    fuses.lock = image.lock.empty() ? fuses.lock : image.lock[0];
+    return fuses;
+}
+
+int no_cable(unsigned tile, unsigned side) {
+    return fail("no cable at side " + std::to_string(side) + " of tile " + std::to_string(tile));
 }
 
 } // namespace
+
+int tilenca::capi::fail(const std::string& message) {
+    last_error = message;
+    return -1;
+}
+
+bool tilenca::capi::find_pin(char port, unsigned bit, avr::PinId* pin) {
+    if (port < 'A' || port > 'L' || port == 'I' || bit > 7) {
+        fail("no pin P" + std::string(1, port) + std::to_string(bit) +
+             "; ports are A to L without I, bits 0 to 7");
+        return false;
+    }
+    *pin = {avr::port_index(port), static_cast<uint8_t>(bit)};
+    return true;
+}
 
 const char* tilenca_last_error(void) {
     return last_error.c_str();
@@ -46,18 +58,18 @@ tilenca_array* tilenca_array_new(const char* image, const char* bootloader, unsi
                                  const double* switch_on_s) {
     try {
         tilenca::Image contents = tilenca::load_image(image);
+        const tilenca::avr::Fuses fuses = fuses_of(contents, bootloader != nullptr);
         if (bootloader != nullptr) {
             const tilenca::Image boot = tilenca::load_image(bootloader);
             contents.flash.insert(contents.flash.end(), boot.flash.begin(), boot.flash.end());
         }
         std::vector<tilenca::Clock> clocks;
         for (unsigned i = 0; i < tiles; i++) {
-            clocks.push_back({1 + ppm[i] * 1e-6, switch_on_s[i] * tilenca::kTicksPerSecond});
+            clocks.push_back(clock_of(ppm[i], switch_on_s[i]));
         }
-        return new tilenca_array{Array(contents, {bootloader != nullptr}, clocks),
-                                 std::vector<std::string>(tiles)};
+        return new tilenca_array{Array(contents, fuses, clocks), {}, {}, {}, {}};
     } catch (const std::exception& error) {
-        last_error = error.what();
+        fail(error.what());
         return nullptr;
     }
 }
@@ -66,10 +78,54 @@ void tilenca_array_free(tilenca_array* array) {
     delete array;
 }
 
+unsigned tilenca_array_size(tilenca_array* array) {
+    return array->array.size();
+}
+
+unsigned tilenca_array_add_tile(tilenca_array* array, double ppm, double switch_on_s) {
+    return array->array.add_tile(clock_of(ppm, switch_on_s));
+}
+
+void tilenca_array_remove_tile(tilenca_array* array, unsigned tile) {
+    array->array.remove_tile(tile);
+}
+
 int tilenca_array_link(tilenca_array* array, unsigned tile, unsigned side, unsigned other_tile,
                        unsigned other_side) {
-    array->array.link({tile, side, other_tile, other_side});
+    return array->array.link({tile, side}, {other_tile, other_side}) ? 0 : fail("a side has a cable already");
+}
+
+int tilenca_array_unlink(tilenca_array* array, unsigned tile, unsigned side) {
+    return array->array.unlink({tile, side}) ? 0 : no_cable(tile, side);
+}
+
+int tilenca_array_connect(tilenca_array* array, unsigned tile, unsigned side, int connected) {
+    return array->array.set_connected({tile, side}, connected != 0) ? 0 : no_cable(tile, side);
+}
+
+int tilenca_array_set_fault(tilenca_array* array, unsigned tile, unsigned side, double loss, double flip,
+                            double delay_s, double baud, uint64_t seed) {
+    tilenca::Wire* wire = array->array.wire_from({tile, side});
+    if (wire == nullptr) {
+        return no_cable(tile, side);
+    }
+    wire->set_fault({loss, flip, delay_s * tilenca::kTicksPerSecond, baud}, seed);
     return 0;
+}
+
+int tilenca_array_fault_counts(tilenca_array* array, unsigned tile, unsigned side, uint64_t counts[3]) {
+    const tilenca::Wire* wire = array->array.wire_from({tile, side});
+    if (wire == nullptr) {
+        return no_cable(tile, side);
+    }
+    counts[0] = wire->counts().bytes;
+    counts[1] = wire->counts().lost;
+    counts[2] = wire->counts().flipped;
+    return 0;
+}
+
+void tilenca_array_set_threads(tilenca_array* array, unsigned threads) {
+    array->array.set_threads(threads);
 }
 
 int tilenca_array_run(tilenca_array* array, double seconds) {
@@ -85,137 +141,44 @@ double tilenca_array_time(tilenca_array* array) {
     return array->array.now() / tilenca::kTicksPerSecond;
 }
 
-const char* tilenca_tile_fault(tilenca_array* array, unsigned tile) {
-    array->faults[tile] = array->array.fault(tile);
-    return array->faults[tile].c_str();
-}
-
-const char* tilenca_tile_warning(tilenca_array* array, unsigned tile, unsigned index) {
-    const auto& list = array->array.tile(tile).chip().warnings().list();
-    return index < list.size() ? list[index].c_str() : nullptr;
-}
-
-int tilenca_tile_segments(tilenca_array* array, unsigned tile) {
-    return array->array.tile(tile).segments();
-}
-
-int tilenca_tile_leds(tilenca_array* array, unsigned tile) {
-    return array->array.tile(tile).leds();
-}
-
-void tilenca_tile_rgb(tilenca_array* array, unsigned tile, uint8_t duty[3]) {
-    array->array.tile(tile).colour(duty);
-}
-
-void tilenca_tile_press_button(tilenca_array* array, unsigned tile, int pressed) {
-    array->array.tile(tile).press_button(pressed != 0);
-}
-
-void tilenca_tile_reset(tilenca_array* array, unsigned tile) {
-    array->array.tile(tile).chip().reset(tilenca::avr::ResetCause::External);
-}
-
-int tilenca_tile_pin(tilenca_array* array, unsigned tile, char port, unsigned bit) {
-    auto& chip = array->array.tile(tile).chip();
-    tilenca::avr::PinId pin;
-    return find_pin(port, bit, &pin) ? chip.gpio().level(pin, chip.cpu().cycle) : -1;
-}
-
-double tilenca_tile_duty(tilenca_array* array, unsigned tile, char port, unsigned bit) {
-    tilenca::avr::PinId pin;
-    return find_pin(port, bit, &pin) ? array->array.tile(tile).chip().duty(pin) : -1;
-}
-
-int tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level) {
-    auto& chip = array->array.tile(tile).chip();
-    tilenca::avr::PinId pin;
-    if (!find_pin(port, bit, &pin)) {
-        return -1;
+int tilenca_array_halted(tilenca_array* array, unsigned first) {
+    for (unsigned i = first; i < array->array.size(); i++) {
+        if (array->array.tile(i).chip().cpu().halted) {
+            return static_cast<int>(i);
+        }
     }
-    chip.gpio().hold_input(pin, level != 0, chip.cpu().cycle);
+    return -1;
+}
+
+size_t tilenca_array_save(tilenca_array* array, const uint8_t** bytes) {
+    array->snapshot = array->array.save();
+    *bytes = array->snapshot.data();
+    return array->snapshot.size();
+}
+
+int tilenca_array_load(tilenca_array* array, const uint8_t* bytes, size_t count) {
+    try {
+        array->array.load(bytes, count);
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+    for (auto& eye : array->eyes) { // of tiles that had not been added then
+        eye.probe = eye.tile < array->array.size() ? eye.probe : nullptr;
+    }
     return 0;
 }
 
-void tilenca_tile_set_analog(tilenca_array* array, unsigned tile, unsigned channel, unsigned value) {
-    array->array.tile(tile).chip().adc().set_input(channel, static_cast<uint16_t>(value));
-}
-
-int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit, uint64_t cycle,
-                           int level) {
-    auto& chip = array->array.tile(tile).chip();
-    tilenca::avr::PinId pin;
-    if (!find_pin(port, bit, &pin)) {
-        return -1;
+int tilenca_array_symbol(tilenca_array* array, const char* name, uint32_t* address, uint32_t* size) {
+    const tilenca::Symbol* symbol = array->array.image().find(name);
+    if (symbol == nullptr) {
+        return fail("the image has no symbol '" + std::string(name) + "'");
     }
-    if (chip.gpio().line(pin) == nullptr) {
-        chip.gpio().attach_line(pin);
-    }
-    chip.push_edge(pin, cycle, level != 0);
+    *address = symbol->address;
+    *size = symbol->size;
     return 0;
 }
 
-void tilenca_tile_send(tilenca_array* array, unsigned tile, const uint8_t* bytes, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        array->array.tile(tile).host().send(bytes[i]);
-    }
-}
-
-size_t tilenca_tile_receive(tilenca_array* array, unsigned tile, uint8_t* bytes, double* times, size_t room) {
-    auto& received = array->array.tile(tile).host().received();
-    size_t taken = 0;
-    for (; taken < room && !received.empty(); taken++) {
-        bytes[taken] = received.front().value;
-        times[taken] = received.front().ticks / tilenca::kTicksPerSecond;
-        received.pop_front();
-    }
-    return taken;
-}
-
-size_t tilenca_tile_display_changes(tilenca_array* array, unsigned tile, size_t first, double* times,
-                                    uint8_t* segments, size_t room) {
-    const auto& changes = array->array.tile(tile).display_changes();
-    for (size_t i = first; i < changes.size() && i - first < room; i++) {
-        times[i - first] = changes[i].ticks / tilenca::kTicksPerSecond;
-        segments[i - first] = changes[i].segments;
-    }
-    return changes.size();
-}
-
-int tilenca_tile_read_eeprom(tilenca_array* array, unsigned tile, unsigned address, uint8_t* bytes,
-                             unsigned count) {
-    const auto& memory = array->array.tile(tile).chip().eeprom().memory();
-    return copy_out(memory.data(), tilenca::avr::kEepromBytes, address, bytes, count);
-}
-
-int tilenca_tile_write_eeprom(tilenca_array* array, unsigned tile, unsigned address, const uint8_t* bytes,
-                              unsigned count) {
-    auto& memory = array->array.tile(tile).chip().eeprom().memory();
-    if (address > memory.size() || count > memory.size() - address) {
-        last_error = "EEPROM address beyond 4095";
-        return -1;
-    }
-    std::copy(bytes, bytes + count, memory.begin() + address);
-    return 0;
-}
-
-int tilenca_tile_read_memory(tilenca_array* array, unsigned tile, unsigned address, uint8_t* bytes,
-                             unsigned count) {
-    const auto& cpu = array->array.tile(tile).chip().cpu();
-    return copy_out(cpu.data, tilenca::avr::kDataBytes, address, bytes, count);
-}
-
-int tilenca_tile_read_flash(tilenca_array* array, unsigned tile, unsigned address, uint8_t* bytes,
-                            unsigned count) {
-    const auto& chip = array->array.tile(tile).chip();
-    return copy_out(chip.flash(), tilenca::avr::kFlashBytes, address, bytes, count);
-}
-
-void tilenca_tile_cycles(tilenca_array* array, unsigned tile, uint64_t* total, uint64_t* asleep) {
-    const auto& cpu = array->array.tile(tile).chip().cpu();
-    *total = cpu.cycle;
-    *asleep = cpu.sleep_cycles;
-}
-
-uint32_t tilenca_tile_pc(tilenca_array* array, unsigned tile) {
-    return 2 * array->array.tile(tile).chip().cpu().pc();
+const char* tilenca_array_function_at(tilenca_array* array, uint32_t address) {
+    array->function = array->array.image().function_at(address);
+    return array->function.c_str();
 }

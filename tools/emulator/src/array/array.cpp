@@ -5,59 +5,202 @@
 
 namespace tilenca {
 
-Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks) : image_(image) {
-    const auto program = std::make_shared<avr::Program>();
+namespace {
+
+constexpr double kTurnsAlone = 64;
+
+} // namespace
+
+Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks)
+    : image_(image), fuses_(fuses), program_(std::make_shared<avr::Program>()) {
     for (const Block& block : image.flash) {
-        program->write(block.address, block.bytes.data(), static_cast<uint32_t>(block.bytes.size()));
+        program_->write(block.address, block.bytes.data(), static_cast<uint32_t>(block.bytes.size()));
+    }
+    data_end_.fixed = static_cast<uint16_t>(std::max<uint32_t>(image.data_end(), avr::kSramStart));
+    if (const Symbol* heap = image.find("__brkval"); heap != nullptr) {
+        data_end_.heap_pointer = static_cast<uint16_t>(heap->address & 0xFFFF);
     }
     for (const Clock& clock : clocks) {
-        tiles_.push_back(std::make_unique<Tile>(program, fuses, clock));
-        for (const Block& block : image.eeprom) {
-            std::copy(block.bytes.begin(), block.bytes.end(),
-                      tiles_.back()->chip().eeprom().memory().begin() + block.address);
-        }
+        add_tile(clock);
     }
 }
 
-void Array::Wire::edge(avr::PinId, uint64_t cycle, bool level) {
-    const double arrives = from_.to_ticks(cycle) + kLinkLatencyTicks;
-    to_.chip().push_edge(to_pin_, to_.clock().to_cycle(arrives), level);
+unsigned Array::add_tile(const Clock& clock) {
+    tiles_.push_back(std::make_unique<Tile>(program_, fuses_, clock, data_end_));
+    for (const Block& block : image_.eeprom) {
+        std::copy(block.bytes.begin(), block.bytes.end(),
+                  tiles_.back()->chip().eeprom().memory().begin() + block.address);
+    }
+    rebuild_order();
+    return size() - 1;
 }
 
-void Array::connect(Tile& from, unsigned from_side, Tile& to, unsigned to_side) {
-    const avr::PinId pin = Tile::receive_pin(to_side);
-    to.chip().gpio().attach_line(pin);
-    wires_.push_back(std::make_unique<Wire>(from.clock(), to, pin));
-    from.chip().gpio().listen(Tile::transmit_pin(from_side), wires_.back().get());
+// --- cables ---
+
+void Array::connect(End from, End to) {
+    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, writing_));
 }
 
-void Array::link(const Wiring& wiring) {
-    Tile &one = tile(wiring.tile), &other = tile(wiring.other_tile);
-    connect(one, wiring.side, other, wiring.other_side);
-    connect(other, wiring.other_side, one, wiring.side);
+void Array::rebuild_order() {
+    into_.assign(tiles_.size(), {});
+    out_of_.assign(tiles_.size(), {});
+    for (const auto& wire : wires_) {
+        into_[wire->to().tile].push_back(wire.get());
+        out_of_[wire->from().tile].push_back(wire.get());
+    }
 }
+
+bool Array::link(End one, End other) {
+    if (wire_from(one) != nullptr || wire_from(other) != nullptr) {
+        return false;
+    }
+    connect(one, other);
+    connect(other, one);
+    rebuild_order();
+    return true;
+}
+
+Wire* Array::wire_from(End end) {
+    for (Wire* wire : out_of_[end.tile]) {
+        if (wire->from().side == end.side) {
+            return wire;
+        }
+    }
+    return nullptr;
+}
+
+bool Array::set_connected(End end, bool connected) {
+    Wire* there = wire_from(end);
+    if (there == nullptr) {
+        return false;
+    }
+    there->set_connected(connected, now_);
+    if (Wire* back = wire_from(there->to()); back != nullptr) {
+        back->set_connected(connected, now_);
+    }
+    return true;
+}
+
+bool Array::unlink(End end) {
+    Wire* there = wire_from(end);
+    if (there == nullptr) {
+        return false;
+    }
+    Wire* back = wire_from(there->to());
+    for (Wire* wire : {there, back}) { // what is on its way is lost, and the line goes to rest
+        if (wire == nullptr) {
+            continue;
+        }
+        Tile& to = tile(wire->to().tile);
+        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + kLinkLatencyTicks),
+                            true);
+    }
+    wires_.erase(std::remove_if(wires_.begin(), wires_.end(),
+                                [&](const auto& wire) { return wire.get() == there || wire.get() == back; }),
+                 wires_.end());
+    rebuild_order();
+    return true;
+}
+
+void Array::set_power(unsigned index, bool on) {
+    tile(index).set_power(on);
+}
+
+void Array::remove_tile(unsigned index) {
+    set_power(index, false);
+    for (unsigned side = 0; side < kSides; side++) {
+        unlink({index, side});
+    }
+}
+
+// --- time ---
 
 // The time until which every tile sleeps; the present if one does not.
 double Array::idle_until() {
     double soonest = HUGE_VAL;
-    for (auto& tile : tiles_) {
-        soonest = std::min(soonest, std::max(now_, tile->wakes_at()));
+    for (const double until : sleeps_until_) {
+        soonest = std::min(soonest, std::max(now_, until));
         if (soonest <= now_) {
-            break;
+            return soonest;
         }
     }
+    for (const auto& wire : wires_) { // what is on its way wakes somebody up, perhaps
+        soonest = std::min(soonest, std::max(now_, wire->pending()));
+    }
     return soonest;
+}
+
+void Array::run_tile_until(unsigned index, double end) {
+    bool has_mail = false;
+    for (Wire* wire : into_[index]) {
+        has_mail = wire->deliver() || has_mail;
+    }
+    if (has_mail || sleeps_until_[index] < end) {
+        Tile& tile = *tiles_[index];
+        tile.run_until(end);
+        // A drifting clock tells the time of waking until its next step only.
+        const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
+        sleeps_until_[index] = tile.clock().drifts() ? std::min(tile.wakes_at(), step) : tile.wakes_at();
+    }
+    for (Wire* wire : out_of_[index]) {
+        if (wire->has_fault()) {
+            wire->settle(end);
+        }
+    }
+}
+
+void Array::run_tile(unsigned index) {
+    for (double end = turn_begin_ + kQuantumTicks; end <= now_; end += kQuantumTicks) {
+        run_tile_until(index, end);
+    }
+}
+
+// Every tile is brought to the present; from here on anything may be done to it.
+void Array::catch_up() {
+    for (auto& tile : tiles_) {
+        tile->run_until(now_);
+    }
+    sleeps_until_.assign(tiles_.size(), 0);
+}
+
+void Array::run_quanta() {
+    writing_ = 1 - writing_;
+    if (workers_ != nullptr) {
+        workers_->share(size());
+        return;
+    }
+    for (unsigned i = 0; i < size(); i++) {
+        run_tile(i);
+    }
+}
+
+bool Array::has_halted() const {
+    return std::any_of(tiles_.begin(), tiles_.end(),
+                       [](const auto& tile) { return tile->chip().cpu().halted; });
 }
 
 void Array::run_for(double ticks) {
     asked_for_ += ticks;
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
-    while (now_ < end) {
-        const double busy_from = std::floor(idle_until() / kQuantumTicks) * kQuantumTicks;
-        now_ = std::min(end, busy_from + kQuantumTicks);
-        for (auto& tile : tiles_) {
-            tile->run_until(now_);
-        }
+    catch_up(); // one that was halted has to
+    while (now_ < end && !has_halted()) {
+        // Tiles that nothing joins can take many turns at once.
+        const double turns = wires_.empty() ? kTurnsAlone * kQuantumTicks : kQuantumTicks;
+        turn_begin_ = std::min(end - kQuantumTicks, std::floor(idle_until() / kQuantumTicks) * kQuantumTicks);
+        now_ = std::min(end, turn_begin_ + turns);
+        run_quanta();
+    }
+    catch_up();
+    asked_for_ = now_ < end ? now_ : asked_for_;
+    if (workers_ != nullptr) {
+        workers_->rest();
+    }
+}
+
+void Array::set_threads(unsigned threads) {
+    workers_ = nullptr;
+    if (threads > 1) {
+        workers_ = std::make_unique<Workers>(threads, [this](unsigned i) { run_tile(i); });
     }
 }
 
@@ -67,7 +210,8 @@ std::string Array::fault(unsigned index) {
         return "";
     }
     const uint32_t address = 2 * cpu.pc();
-    const std::string function = image_.function_at(address);
+    const bool own = !tile(index).chip().has_changed_flash();
+    const std::string function = own ? image_.function_at(address) : "";
     char text[64];
     std::snprintf(text, sizeof text, "tile %u stopped at 0x%05X", index + 1, address);
     return text + (function.empty() ? "" : " in " + function) + ": " + cpu.fault;

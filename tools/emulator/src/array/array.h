@@ -1,8 +1,10 @@
 // Many tiles, wired, in step: each runs a quantum of time, then the next; what one sends reaches another only
 // after a latency longer than the quantum. So nobody can receive what has not been sent yet, and the outcome
-// does not depend on the order in which the tiles run.
+// does not depend on the order in which the tiles run, nor on how many threads they share.
 #pragma once
 
+#include "array/wire.h"
+#include "array/workers.h"
 #include "image/image.h"
 #include "tile/tile.h"
 
@@ -12,48 +14,70 @@
 
 namespace tilenca {
 
-constexpr double kQuantumTicks = 256;
-constexpr double kLinkLatencyTicks = 320; // 20 us; the margin covers the last instruction of a quantum
+constexpr double kQuantumTicks = 256; // the latency's margin covers the last instruction of a quantum
 
 class Array {
   public:
-    struct Wiring {
-        unsigned tile, side, other_tile, other_side;
-    };
+    using End = Wire::End;
 
     Array(const Image& image, const avr::Fuses& fuses, const std::vector<Clock>& clocks);
 
-    // Joins two sides, both directions.
-    void link(const Wiring& wiring);
-    // Runs on, in whole quanta on a fixed grid: how a caller cuts time into calls changes nothing.
+    // Returns the new tile's index.
+    unsigned add_tile(const Clock& clock);
+    // Joins two sides, both directions; false: one of them is joined already.
+    bool link(End one, End other);
+    // Takes the cable at that side away; false: there is none.
+    bool unlink(End end);
+    // Cuts or mends the cable at that side; false: there is none.
+    bool set_connected(End end, bool connected);
+    // The direction that leaves that side; null: no cable there.
+    Wire* wire_from(End end);
+    void set_power(unsigned index, bool on);
+    // Off for good, and without cables; the other tiles keep their indices.
+    void remove_tile(unsigned index);
+
+    // Runs on, in whole quanta on a fixed grid: how a caller cuts time into calls changes nothing. A tile
+    // that meets a breakpoint ends it early; the next call goes on from there.
     void run_for(double ticks);
     // A whole number of quanta: less than one beyond all that was asked for.
     double now() const { return now_; }
+    void set_threads(unsigned threads);
+
     Tile& tile(unsigned index) { return *tiles_[index]; }
     unsigned size() const { return static_cast<unsigned>(tiles_.size()); }
+    bool has_halted() const;
+    const Image& image() const { return image_; }
     // What stopped a tile: the program counter, the function, the fact; empty: it runs.
     std::string fault(unsigned index);
 
+    // Everything that decides about the future, in bytes. Loading throws avr::ArchiveError, and may leave the
+    // array in no sensible state when it does.
+    std::vector<uint8_t> save();
+    void load(const uint8_t* bytes, size_t count);
+
   private:
-    // One direction of a cable: what leaves one tile's pin arrives at another's.
-    class Wire : public avr::EdgeListener {
-      public:
-        Wire(const Clock& from, Tile& to, avr::PinId to_pin) : from_(from), to_(to), to_pin_(to_pin) {}
-        void edge(avr::PinId pin, uint64_t cycle, bool level) override;
-
-      private:
-        const Clock& from_;
-        Tile& to_;
-        avr::PinId to_pin_;
-    };
-
-    void connect(Tile& from, unsigned from_side, Tile& to, unsigned to_side);
+    void run_quanta();
+    void run_tile(unsigned index);
+    void run_tile_until(unsigned index, double end);
+    void catch_up();
+    void connect(End from, End to);
+    void rebuild_order();
     double idle_until();
+    uint32_t image_number() const;
 
     Image image_; // for its symbols
+    avr::Fuses fuses_;
+    DataEnd data_end_;
+    std::shared_ptr<avr::Program> program_;
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::vector<std::unique_ptr<Wire>> wires_;
+    std::vector<std::vector<Wire*>> into_, out_of_; // each tile's wires
+    // Until when each tile sleeps, unless something comes in: it need not run, and may lag behind, before.
+    std::vector<double> sleeps_until_;
+    std::unique_ptr<Workers> workers_;
+    unsigned writing_ = 0; // which of a wire's two lists
     double now_ = 0;
+    double turn_begin_ = 0; // of the quanta under way, which end now
     double asked_for_ = 0;
 };
 

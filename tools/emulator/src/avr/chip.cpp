@@ -1,7 +1,9 @@
 #include "avr/chip.h"
 
+#include "avr/ops.h"
 #include "avr/unmodelled.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
@@ -13,7 +15,8 @@ constexpr uint16_t kPinFirst = 0x20, kFlagsFirst = 0x35, kFlagsLast = 0x3C, kGtc
 constexpr uint16_t kMcusr = 0x54, kMcucr = 0x55, kSreg = 0x5F;
 constexpr uint8_t kIvce = 1, kIvsel = 2;
 constexpr uint8_t kPsrSync = 1, kPsrAsync = 2, kTsm = 0x80;
-constexpr uint8_t kSleepEnable = 1, kSleepMode = 0x0E;
+constexpr uint16_t kClkpr = 0x61, kPrr0 = 0x64, kPrr1 = 0x65, kSpl = 0x5D, kSph = 0x5E;
+constexpr uint8_t kSleepEnable = 1;
 
 // Registers in which a written one acts on that bit alone, and a zero does nothing: flags, and PIN's toggles.
 bool acts_by_ones(uint16_t address) {
@@ -24,7 +27,7 @@ bool acts_by_ones(uint16_t address) {
 } // namespace
 
 Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
-    : program_(std::move(program)), fuses_(fuses), schedule_(cpu_) {
+    : image_(std::move(program)), program_(image_), fuses_(fuses), schedule_(cpu_) {
     std::memset(cpu_.data, 0, sizeof cpu_.data);
     std::memset(cpu_.special, 0, sizeof cpu_.special);
     cpu_.bus = this;
@@ -33,8 +36,13 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
     gpio_ = std::make_unique<Gpio>(core);
     eeprom_ = std::make_unique<Eeprom>(core);
     adc_ = std::make_unique<Adc>(core);
-    watchdog_ = std::make_unique<Watchdog>(core);
-    self_programming_ = std::make_unique<SelfProgramming>(core, program_);
+    comparator_ = std::make_unique<Comparator>(core, *adc_);
+    spi_ = std::make_unique<Spi>(core, *gpio_);
+    twi_ = std::make_unique<Twi>(core);
+    watchdog_ = std::make_unique<Watchdog>(core, fuses_);
+    self_programming_ = std::make_unique<SelfProgramming>(core, program_, fuses_);
+    // Ports come first: a saved state is loaded in this order, and others enter themselves there again.
+    attach(*gpio_);
     for (unsigned i = 0; i < timers_.size(); i++) {
         timers_[i] = std::make_unique<Timer>(core, *gpio_, i);
         attach(*timers_[i]);
@@ -43,16 +51,21 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
         usarts_[i] = std::make_unique<Usart>(core, *gpio_, i);
         attach(*usarts_[i]);
     }
-    for (Peripheral* one :
-         {static_cast<Peripheral*>(eeprom_.get()), static_cast<Peripheral*>(adc_.get()),
-          static_cast<Peripheral*>(watchdog_.get()), static_cast<Peripheral*>(self_programming_.get()),
-          static_cast<Peripheral*>(gpio_.get())}) {
+    const std::initializer_list<Peripheral*> others = {
+        eeprom_.get(), adc_.get(),      comparator_.get(),      spi_.get(),
+        twi_.get(),    watchdog_.get(), self_programming_.get()};
+    for (Peripheral* one : others) {
         attach(*one);
     }
     for (uint16_t address = kIoStart; address < kSramStart; address++) {
-        const bool system = address == kGtccr || address == kSmcr || address == kMcucr || address == kSreg;
-        cpu_.special[address] = cpu_.special[address] || system || is_unmodelled(address);
+        const bool system = address == kGtccr || address == kSmcr || address == kMcucr || address == kSreg ||
+                            address == kClkpr || address == kPrr0 || address == kPrr1;
+        if (system || is_unmodelled(address)) {
+            cpu_.special[address] = kReadsThroughBus | kWritesThroughBus;
+        }
     }
+    cpu_.special[kSpl] = cpu_.special[kSph] = kWritesThroughBus;
+    join();
     reset(ResetCause::PowerOn);
 }
 
@@ -61,7 +74,7 @@ Chip::~Chip() = default;
 void Chip::attach(Peripheral& peripheral) {
     for (const uint16_t address : peripheral.registers()) {
         at_address_[address] = &peripheral;
-        cpu_.special[address] = true;
+        cpu_.special[address] = kReadsThroughBus | kWritesThroughBus;
     }
     for (const uint8_t vector : peripheral.vectors()) {
         at_vector_[vector] = &peripheral;
@@ -69,17 +82,69 @@ void Chip::attach(Peripheral& peripheral) {
     all_.push_back(&peripheral);
 }
 
+// What one part of the chip has to tell another.
+void Chip::join() {
+    adc_->on_trigger_changed([this](uint64_t cycle) { update_triggers(cycle); });
+    gpio_->on_int0([this](uint64_t cycle) { adc_->trigger(AdcTrigger::Int0, cycle); });
+    for (unsigned i : {0u, 1u}) {
+        timers_[i]->on_flags([this](uint64_t cycle) {
+            for (unsigned source = 3; source <= 7; source++) {
+                adc_->trigger(static_cast<AdcTrigger>(source), cycle);
+            }
+        });
+    }
+    comparator_->on_setup(
+        [this](uint64_t cycle) { timers_[1]->capture_from_comparator(comparator_->captures(), cycle); });
+    comparator_->on_change([this](bool level, uint64_t cycle) {
+        if (comparator_->captures()) {
+            timers_[1]->capture_edge(level, cycle);
+        }
+        adc_->trigger(AdcTrigger::Comparator, cycle);
+    });
+}
+
+// The timers tell of the one flag that starts conversions, if any does.
+void Chip::update_triggers(uint64_t cycle) {
+    const auto mask = [this](AdcTrigger one, uint8_t its, AdcTrigger other, uint8_t others) {
+        return static_cast<uint8_t>((adc_->is_triggered_by(one) ? its : 0) |
+                                    (adc_->is_triggered_by(other) ? others : 0));
+    };
+    const uint8_t capture = adc_->is_triggered_by(AdcTrigger::Timer1Capture) ? kFlagCapture : 0;
+    timers_[0]->tell_of_flags(
+        mask(AdcTrigger::Timer0CompareA, kFlagCompareA, AdcTrigger::Timer0Overflow, kFlagOverflow), cycle);
+    timers_[1]->tell_of_flags(capture | mask(AdcTrigger::Timer1CompareB, kFlagCompareA << 1,
+                                             AdcTrigger::Timer1Overflow, kFlagOverflow),
+                              cycle);
+}
+
 void Chip::reset(ResetCause cause) {
     const uint8_t causes = cause == ResetCause::PowerOn ? 0 : cpu_.data[kMcusr];
-    cpu_.reset(fuses_.reset_to_boot ? kBootStartWord : 0);
+    cpu_.reset(fuses_.resets_to_boot() ? fuses_.boot_start() : 0);
     cpu_.data[kMcusr] = causes | static_cast<uint8_t>(cause);
-    vectors_movable_until_ = 0;
+    vectors_movable_until_ = prescaler_changeable_until_ = 0;
+    update_clocks(cpu_.cycle);
     for (Peripheral* peripheral : all_) {
         peripheral->reset(cpu_.cycle);
     }
-    if ((cpu_.data[kMcusr] & static_cast<uint8_t>(ResetCause::Watchdog)) != 0) {
+    const bool by_watchdog = (cpu_.data[kMcusr] & static_cast<uint8_t>(ResetCause::Watchdog)) != 0;
+    if (by_watchdog || fuses_.watchdog_always_on()) {
         watchdog_->force_on(cpu_.cycle);
     }
+    const uint32_t divisor = fuses_.starts_at_an_eighth() ? 8 : 1;
+    cpu_.data[kClkpr] = divisor == 8 ? 3 : 0;
+    cpu_.yields = cpu_.clock_divisor != divisor;
+    cpu_.clock_divisor = divisor;
+}
+
+void Chip::power_on() {
+    std::memset(cpu_.data, 0, sizeof cpu_.data);
+    cpu_.fault.clear();
+    cpu_.stack_deepest = kDataBytes;
+    reset(ResetCause::PowerOn);
+}
+
+void Chip::pass_while_off(uint64_t cycle) {
+    cpu_.cycle = std::max(cpu_.cycle, cycle);
 }
 
 // --- the core's bus ---
@@ -107,25 +172,47 @@ void Chip::write_bit(uint16_t address, uint8_t mask, bool value, uint64_t cycle)
 }
 
 void Chip::write_system(uint16_t address, uint8_t value, uint64_t cycle) {
+    if (address == kSpl || address == kSph) {
+        write_stack_pointer(address, value, cycle);
+        return;
+    }
+    if (address == kClkpr) {
+        write_clock_prescaler(value, cycle);
+        return;
+    }
     if (address == kMcucr) {
         const bool movable = cycle <= vectors_movable_until_;
         vectors_movable_until_ = (value & kIvce) != 0 ? cycle + 4 : 0;
         const uint8_t selected = (movable && (value & kIvce) == 0 ? value : cpu_.data[kMcucr]) & kIvsel;
         cpu_.data[kMcucr] = static_cast<uint8_t>((value & ~(kIvsel | kIvce)) | selected);
-        cpu_.vector_base = selected != 0 ? kBootStartWord : 0;
+        cpu_.vector_base = selected != 0 ? fuses_.boot_start() : 0;
         return;
     }
     cpu_.data[address] = value;
     if (address == kSmcr) {
         cpu_.sleep_enabled = (value & kSleepEnable) != 0;
-        if ((value & kSleepEnable) != 0 && (value & kSleepMode) != 0) {
-            warnings_.once("sleep modes deeper than idle: sleep like idle, all clocks run on");
-        }
+    } else if (address == kPrr0 || address == kPrr1) {
+        update_clocks(cycle);
     } else if (address == kGtccr) {
         synchronise_prescalers(value, cycle);
     } else if (const char* function = unmodelled_function(address, value); function != nullptr) {
         warnings_.once(function);
     }
+}
+
+// Compilers write the high byte first, and the low byte at once after it.
+void Chip::write_stack_pointer(uint16_t address, uint8_t value, uint64_t cycle) {
+    constexpr uint64_t kTogether = 8;
+    const uint16_t before = ops::pair(&cpu_, kSpl);
+    cpu_.data[address] = value;
+    if (address == kSph) {
+        stack_before_ = before;
+        stack_written_until_ = cycle + kTogether;
+        return;
+    }
+    const uint16_t from = cycle <= stack_written_until_ ? stack_before_ : before;
+    stack_written_until_ = 0;
+    cpu_.stack_pointer_written(from, ops::pair(&cpu_, kSpl));
 }
 
 void Chip::synchronise_prescalers(uint8_t value, uint64_t cycle) {
@@ -134,10 +221,9 @@ void Chip::synchronise_prescalers(uint8_t value, uint64_t cycle) {
             timer->restart_prescaler(cycle);
         }
     }
-    cpu_.data[kGtccr] = value & kTsm;
-    if ((value & kTsm) != 0) {
-        warnings_.once("timer synchronisation (TSM): the prescalers are not held");
-    }
+    const bool held = (value & kTsm) != 0; // the resets stay as long as TSM does
+    cpu_.data[kGtccr] = held ? value & (kTsm | kPsrSync | kPsrAsync) : 0;
+    update_clocks(cycle);
 }
 
 Peripheral& Chip::at_slot(Slot slot) {
@@ -157,6 +243,10 @@ Peripheral& Chip::at_slot(Slot slot) {
         return *watchdog_;
     case Slot::ProgramMemory:
         return *self_programming_;
+    case Slot::Spi:
+        return *spi_;
+    case Slot::Twi:
+        return *twi_;
     default:
         return *gpio_;
     }
@@ -183,8 +273,8 @@ uint32_t Chip::store_program_memory(uint32_t word, uint64_t cycle, bool advance_
     return self_programming_->execute(word, cycle, advance_z);
 }
 
-uint8_t Chip::read_program_memory(uint32_t address) {
-    return self_programming_->read_flash(address);
+uint8_t Chip::read_program_memory(uint32_t word, uint32_t address) {
+    return self_programming_->read_flash(word, address);
 }
 
 void Chip::address_outside_memory(uint16_t address, bool write) {
@@ -195,49 +285,6 @@ void Chip::address_outside_memory(uint16_t address, bool write) {
         warnings_.once(text);
     }
     (write ? told_write_ : told_read_) = true;
-}
-
-// --- the outside ---
-
-void Chip::push_edge(PinId pin, uint64_t cycle, bool level) {
-    Line& line = *gpio_->line(pin);
-    if (line.edges() > 32) {
-        uint64_t needed = cpu_.cycle;
-        for (auto& usart : usarts_) {
-            const PinId receives = usart->receive_pin();
-            if (receives.port == pin.port && receives.bit == pin.bit) {
-                needed = usart->needs_line_from(needed);
-            }
-        }
-        line.forget_before(needed);
-    }
-    line.push(cycle, level);
-    gpio_->line_changed(pin);
-    for (auto& usart : usarts_) {
-        const PinId receives = usart->receive_pin();
-        if (receives.port == pin.port && receives.bit == pin.bit) {
-            usart->line_changed();
-        }
-    }
-}
-
-double Chip::duty(PinId pin) {
-    if (!gpio_->is_output(pin)) {
-        return 0;
-    }
-    for (auto& timer : timers_) {
-        if (const double share = timer->duty(pin, cpu_.cycle); share >= 0) {
-            return share;
-        }
-    }
-    return gpio_->port_bit(pin) ? 1 : 0;
-}
-
-uint64_t Chip::wakes_at() {
-    uint64_t due = 0;
-    schedule_.next(&due);
-    const bool idle = cpu_.asleep && !(cpu_.requests != 0 && cpu_.interrupts_on);
-    return idle ? due : cpu_.cycle;
 }
 
 } // namespace tilenca::avr

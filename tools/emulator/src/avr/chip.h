@@ -1,16 +1,20 @@
 // A whole ATmega2560: the core and everything around it. Knows nothing of the board it sits on.
 #pragma once
 
-#include "avr/adc.h"
+#include "avr/comparator.h"
 #include "avr/eeprom.h"
 #include "avr/gpio.h"
 #include "avr/self_programming.h"
+#include "avr/spi.h"
 #include "avr/timer.h"
+#include "avr/twi.h"
 #include "avr/usart.h"
 #include "avr/vectors.h"
 #include "avr/watchdog.h"
 
+#include <map>
 #include <memory>
+#include <set>
 
 namespace tilenca::avr {
 
@@ -19,8 +23,10 @@ constexpr double kNominalHz = 16e6;
 // Bits of MCUSR.
 enum class ResetCause : uint8_t { PowerOn = 1, External = 2, BrownOut = 4, Watchdog = 8 };
 
-struct Fuses {
-    bool reset_to_boot = false; // BOOTRST
+// The clock passed a marked instruction.
+struct MarkPassed {
+    uint32_t word;
+    uint64_t cycle;
 };
 
 class Chip : private Bus {
@@ -31,16 +37,26 @@ class Chip : private Bus {
     Chip& operator=(const Chip&) = delete;
 
     void reset(ResetCause cause);
+    // Off and on again: as reset, and SRAM forgets.
+    void power_on();
+    // As long as it is off, time passes and nothing happens.
+    void pass_while_off(uint64_t cycle);
     // Runs until `cycle` is reached or passed, or a fault stops the core.
     void run_until(uint64_t cycle) { cpu_.run(cycle); }
     void step() { cpu_.step(); }
 
     Cpu& cpu() { return cpu_; }
+    const Cpu& cpu() const { return cpu_; }
     Gpio& gpio() { return *gpio_; }
     Eeprom& eeprom() { return *eeprom_; }
     Adc& adc() { return *adc_; }
+    Comparator& comparator() { return *comparator_; }
+    Spi& spi() { return *spi_; }
+    Fuses& fuses() { return fuses_; }
     Usart& usart(unsigned number) { return *usarts_[number]; }
     const uint8_t* flash() const { return program_->bytes(); }
+    // Whether it has programmed itself: then the image's symbols tell nothing any more.
+    bool has_changed_flash() const { return self_programming_->has_changed_flash(); }
     const Warnings& warnings() const { return warnings_; }
     // Changes the level of an input from `cycle` on; the pin has a line attached.
     void push_edge(PinId pin, uint64_t cycle, bool level);
@@ -48,6 +64,19 @@ class Chip : private Bus {
     double duty(PinId pin);
     // When the core next does anything at all: kNever if it sleeps for good.
     uint64_t wakes_at();
+
+    // The core halts before the instruction at a word of flash.
+    void set_breakpoint(uint32_t word, bool set);
+    // Notes the cycle at which the instruction at a word of flash begins.
+    void set_mark(uint32_t word, bool set);
+    std::vector<MarkPassed>& marks_passed() { return marks_passed_; }
+    // Whether the next instruction is under a trap.
+    bool is_trapped() const { return program_->traps().count(cpu_.pc()) != 0; }
+    // Executes the instruction before which the core has halted.
+    void step_halted();
+
+    // All that is not the same for every chip with this image; traps stay as they are.
+    void state(Archive& archive);
 
   private:
     uint8_t read(uint16_t address, uint64_t cycle) override;
@@ -57,14 +86,26 @@ class Chip : private Bus {
     void interrupt_taken(uint8_t vector, uint64_t cycle) override;
     void watchdog_reset(uint64_t cycle) override { watchdog_->restart(cycle); }
     uint32_t store_program_memory(uint32_t word, uint64_t cycle, bool advance_z) override;
-    uint8_t read_program_memory(uint32_t address) override;
+    uint8_t read_program_memory(uint32_t word, uint32_t address) override;
     void address_outside_memory(uint16_t address, bool write) override;
+    void sleep_changed(bool asleep, uint64_t cycle) override;
+    bool trapped(uint32_t word, uint64_t cycle) override;
+    void lift_trap(uint32_t word, bool lifted) override;
 
     void attach(Peripheral& peripheral);
+    void join();
+    void update_triggers(uint64_t cycle);
+    void update_clocks(uint64_t cycle);
+    void write_stack_pointer(uint16_t address, uint8_t value, uint64_t cycle);
+    void write_clock_prescaler(uint8_t value, uint64_t cycle);
+    void update_trap(uint32_t word);
+    void flash_state(Archive& archive);
+    void forget_past(PinId pin);
     void write_system(uint16_t address, uint8_t value, uint64_t cycle);
     void synchronise_prescalers(uint8_t value, uint64_t cycle);
     Peripheral& at_slot(Slot slot);
 
+    const std::shared_ptr<Program> image_; // as loaded
     std::shared_ptr<Program> program_;
     Fuses fuses_;
     Cpu cpu_;
@@ -73,6 +114,9 @@ class Chip : private Bus {
     std::unique_ptr<Gpio> gpio_;
     std::unique_ptr<Eeprom> eeprom_;
     std::unique_ptr<Adc> adc_;
+    std::unique_ptr<Comparator> comparator_;
+    std::unique_ptr<Spi> spi_;
+    std::unique_ptr<Twi> twi_;
     std::unique_ptr<Watchdog> watchdog_;
     std::unique_ptr<SelfProgramming> self_programming_;
     std::array<std::unique_ptr<Timer>, 6> timers_;
@@ -80,7 +124,11 @@ class Chip : private Bus {
     std::array<Peripheral*, kSramStart> at_address_{};
     std::array<Peripheral*, kVectors> at_vector_{};
     std::vector<Peripheral*> all_;
-    uint64_t vectors_movable_until_ = 0;
+    uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0;
+    uint16_t stack_before_ = 0; // the stack pointer while its two bytes are being written
+    uint64_t stack_written_until_ = 0;
+    std::set<uint32_t> breakpoints_, marks_;
+    std::vector<MarkPassed> marks_passed_;
     bool told_read_ = false, told_write_ = false;
 };
 

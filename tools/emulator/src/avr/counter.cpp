@@ -233,4 +233,17 @@ double Counter::duty(unsigned channel) const {
     return actions_[channel] == 2 ? high : 1.0 - high;
 }
 
+// Where the register is the top, there is nothing to capture into.
+void Counter::capture_now() {
+    if (mode_.top != Top::Capture) {
+        capture_ = count_;
+        flags |= kFlagCapture;
+    }
+}
+
+void Counter::state(Archive& archive) {
+    archive(mode_.wave, mode_.top, mode_.fixed_top, count_, capture_, down_, blocked_, compares_, buffers_,
+            actions_, levels_, flags);
+}
+
 } // namespace tilenca::avr

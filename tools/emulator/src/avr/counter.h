@@ -4,6 +4,8 @@
 // question.
 #pragma once
 
+#include "avr/archive.h"
+
 #include <array>
 #include <cstdint>
 
@@ -31,10 +33,15 @@ class Counter {
     void set_compare(unsigned channel, uint16_t value);
     void set_capture(uint16_t value) { capture_ = value; }
     void force_compare(unsigned channel) { act(channel); }
+    // An edge of the capture unit's input.
+    void capture_now();
 
     void advance(uint64_t ticks);
     // Ticks until one of the flags in `mask` is set, or a buffered compare value takes effect; 0: never.
     uint64_t ticks_to_flag(uint8_t mask) const;
+    // Ticks until an output may change.
+    uint64_t ticks_to_change() const { return ticks_to_boundary(); }
+    void state(Archive& archive);
 
     uint16_t count() const { return count_; }
     uint16_t compare(unsigned channel) const { return buffers_[channel]; }

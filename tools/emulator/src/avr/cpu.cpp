@@ -3,6 +3,7 @@
 #include "avr/ops.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 namespace tilenca::avr {
@@ -11,6 +12,8 @@ namespace {
 
 constexpr uint64_t kInterruptCycles = 5; // with three bytes of return address
 constexpr uint64_t kWakeCycles = 5;      // more, when the interrupt ends a sleep
+// A stack pointer that is written further down than this starts another stack, and is no large frame.
+constexpr int kLargestFrame = 512;
 
 } // namespace
 
@@ -43,7 +46,7 @@ uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, ui
         cpu->bus->address_outside_memory(address, false);
         return 0;
     }
-    const bool special = address < kSramStart && cpu->special[address];
+    const bool special = address < kSramStart && (cpu->special[address] & kReadsThroughBus) != 0;
     return special ? cpu->bus->read(address, cycle) : cpu->data[address];
 }
 
@@ -62,7 +65,8 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
         cpu->set_status(value);
     } else if (address >= kDataBytes) {
         cpu->bus->address_outside_memory(address, true);
-    } else if (address >= kIoStart && address < kSramStart && cpu->special[address]) {
+    } else if (address >= kIoStart && address < kSramStart &&
+               (cpu->special[address] & kWritesThroughBus) != 0) {
         cpu->bus->write(address, value, cycle);
     } else {
         cpu->data[address] = value;
@@ -85,10 +89,58 @@ void Cpu::reset(uint32_t start_word) {
     held_until = 0;
     stall_cycles = 0;
     vector_base = 0;
-    asleep = sleep_enabled = false;
+    asleep = deeply = sleep_enabled = trap_hit = halted = stack_is_elsewhere = false;
     std::memset(data + kIoStart, 0, kSramStart - kIoStart);
     ops::set_pair(this, ops::kStackPointer, kDataBytes - 1);
+    set_stack_low(std::max<uint16_t>(kDataBytes - 1, stack_floor));
     end_soon();
+}
+
+void Cpu::set_stack_low(uint16_t low) {
+    stack_low = low;
+    stack_room = static_cast<uint16_t>(kDataBytes - low);
+}
+
+void Cpu::set_stack_floor(uint16_t floor) {
+    stack_floor = std::clamp<uint16_t>(floor, kSramStart, kDataBytes - 1);
+    set_stack_low(std::max(stack_deepest, stack_floor));
+}
+
+// A stack that was put below the floor in one step is one of many, as in programs with tasks of their own.
+void Cpu::stack_pointer_written(uint16_t from, uint16_t to) {
+    const bool is_frame = to < from && from - to <= kLargestFrame;
+    if (to >= stack_floor) {
+        stack_is_elsewhere = false;
+    } else if (!is_frame) {
+        stack_is_elsewhere = true;
+    }
+    if (to < from && !stack_is_elsewhere) {
+        grow_stack(from, static_cast<uint16_t>(to + 1));
+    }
+}
+
+bool Cpu::grow_stack(uint16_t from, uint16_t lowest) {
+    if (lowest >= kDataBytes || from >= kDataBytes) {
+        return true;
+    }
+    if (lowest >= stack_floor) {
+        set_stack_low(std::min(stack_low, lowest));
+        stack_deepest = std::min(stack_deepest, lowest);
+        return true;
+    }
+    if (from >= stack_floor) {
+        stack_is_elsewhere = false;
+    } else if (from + 1 < stack_floor) {
+        stack_is_elsewhere = true; // it has not grown there, or that would have been seen
+    }
+    if (stack_is_elsewhere) {
+        return true;
+    }
+    char text[96];
+    std::snprintf(text, sizeof text, "the stack, grown down to 0x%04X, meets the data, which end at 0x%04X",
+                  lowest, stack_floor - 1);
+    fail(text);
+    return false;
 }
 
 uint8_t Cpu::status() const {
@@ -122,12 +174,20 @@ void Cpu::request(uint8_t vector, bool active) {
 
 void Cpu::take_interrupt() {
     const auto vector = static_cast<uint8_t>(__builtin_ctzll(requests));
-    cycle += kInterruptCycles + (asleep ? kWakeCycles : 0);
-    sleep_cycles += asleep ? kWakeCycles : 0;
-    asleep = false;
+    if (asleep) {
+        const uint64_t waking = kWakeCycles + wake_cycles;
+        cycle += waking;
+        sleep_cycles += waking;
+        asleep = false;
+        bus->sleep_changed(false, cycle);
+    }
+    cycle += kInterruptCycles;
     interrupts_on = false;
     const uint32_t word = pc();
     uint16_t top = ops::pair(this, ops::kStackPointer);
+    if (!grow_stack(top, static_cast<uint16_t>(top - 2))) {
+        return;
+    }
     for (unsigned i = 0; i < 3; i++, top--) {
         ops::write_slow(this, top, static_cast<uint8_t>(word >> (8 * i)), cycle, carry, zero, nvh);
     }
@@ -136,12 +196,36 @@ void Cpu::take_interrupt() {
     bus->interrupt_taken(vector, cycle);
 }
 
+// Executes instructions up to `limit`, at least one.
+void Cpu::execute() {
+    at->run(this, at, cycle, carry, zero, nvh);
+    if (!trap_hit) {
+        return;
+    }
+    trap_hit = false;
+    if (bus->trapped(pc(), cycle)) {
+        halted = true;
+    } else {
+        leave_breakpoint();
+    }
+}
+
+void Cpu::leave_breakpoint() {
+    halted = false;
+    const uint32_t word = pc();
+    bus->lift_trap(word, true);
+    limit = 0;
+    at->run(this, at, cycle, carry, zero, nvh);
+    bus->lift_trap(word, false);
+}
+
 void Cpu::run(uint64_t until) {
-    while (cycle < until && fault.empty()) {
+    while (cycle < until && fault.empty() && !halted && !yields) {
         const uint64_t next_event = bus->serve_events(cycle);
         const bool wanted = requests != 0 && interrupts_on;
         if (wanted && cycle > held_until) {
             take_interrupt();
+            halt_if_asked();
             continue; // an event can have fallen due meanwhile, and rank first
         }
         limit = std::min(until, next_event);
@@ -150,11 +234,12 @@ void Cpu::run(uint64_t until) {
             cycle = limit;
             continue;
         }
-        if (wanted) {
+        if (wanted || halts_after_one) {
             limit = std::min(limit, cycle + 1);
         }
         asleep = false;
-        at->run(this, at, cycle, carry, zero, nvh);
+        execute();
+        halt_if_asked();
     }
 }
 
@@ -172,7 +257,24 @@ void Cpu::step() {
     }
     limit = 0;
     instructions++;
-    at->run(this, at, cycle, carry, zero, nvh);
+    execute();
+}
+
+void Cpu::state(Archive& archive) {
+    uint32_t word = pc();
+    archive.bytes(data, sizeof data);
+    archive(word, cycle, carry, zero, nvh, requests, held_until, sleep_cycles, stall_cycles, vector_base);
+    archive(interrupts_on, transfer, asleep, deeply, sleep_enabled, wake_cycles, instructions, fault);
+    archive(stack_low, stack_floor, stack_deepest, stack_is_elsewhere, clock_divisor);
+    if (archive.loading()) {
+        if (word > kFlashWords + 1 || stack_low > kDataBytes) {
+            throw ArchiveError("it leads outside the memory");
+        }
+        at = program + word;
+        set_stack_low(stack_low);
+        trap_hit = halted = false;
+        yields = false;
+    }
 }
 
 } // namespace tilenca::avr

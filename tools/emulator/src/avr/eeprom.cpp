@@ -56,7 +56,8 @@ void Eeprom::start_write(uint64_t cycle) {
     busy_ = true;
     armed_until_ = 0;
     core_.cpu.stall_cycles += 2;
-    core_.schedule.set(Slot::Eeprom, cycle + (mode == 0 ? kEraseAndWriteCycles : kSingleCycles));
+    core_.schedule.set(Slot::Eeprom,
+                       cycle + (mode == 0 ? kEraseAndWriteCycles : kSingleCycles) / core_.cpu.clock_divisor);
 }
 
 void Eeprom::on_event(Slot, uint64_t) {

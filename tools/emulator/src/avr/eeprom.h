@@ -17,6 +17,7 @@ class Eeprom : public Peripheral {
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
     void reset(uint64_t cycle) override;
+    void state(Archive& archive) override { archive(memory_, armed_until_, busy_); }
 
     std::vector<uint8_t>& memory() { return memory_; }
 

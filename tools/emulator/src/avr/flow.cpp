@@ -9,10 +9,13 @@ const Instruction* target(const Cpu* cpu, uint32_t word) {
     return cpu->program + (word < kFlashWords ? word : kFlashWords);
 }
 
-// Return addresses on a stack that is not in SRAM. Kept out of the handlers so that those need no stack
-// frame.
+// Calls that deepen the stack, and return addresses on one that is not in SRAM. Kept out of the handlers so
+// that those need no stack frame.
 TILENCA_OP(call_slow) {
     const uint16_t top = pair(cpu, kStackPointer);
+    if (!cpu->grow_stack(top, static_cast<uint16_t>(top - 2))) {
+        return leave(cpu, at, cycle, carry, zero, nvh);
+    }
     for (unsigned i = 0; i < 3; i++) {
         const auto byte = static_cast<uint8_t>(cpu->return_word >> (8 * i));
         write_slow(cpu, static_cast<uint16_t>(top - i), byte, cycle, carry, zero, nvh);
@@ -57,7 +60,7 @@ TILENCA_OP(eijmp) {
     const uint16_t top = pair(cpu, kStackPointer);                                                           \
     const auto word = static_cast<uint32_t>(at + (words) - cpu->program);                                    \
     at = (to);                                                                                               \
-    if (__builtin_expect(!is_sram(top) || !is_sram(static_cast<uint16_t>(top - 2)), 0)) {                    \
+    if (__builtin_expect(!is_plain_push(cpu, top, 3), 0)) {                                                  \
         cpu->return_word = word;                                                                             \
         return call_slow(cpu, at, cycle + (cycles), carry, zero, nvh);                                       \
     }                                                                                                        \
@@ -112,7 +115,8 @@ TILENCA_OP(reti) {
     TILENCA_NEXT(1, 1)
 
 #define TILENCA_IO_BYTE                                                                                      \
-    (cpu->special[at->k] ? read_slow(cpu, at->k, cycle, carry, zero, nvh) : cpu->data[at->k])
+    ((cpu->special[at->k] & kReadsThroughBus) != 0 ? read_slow(cpu, at->k, cycle, carry, zero, nvh)          \
+                                                   : cpu->data[at->k])
 
 TILENCA_OP(cpse) {
     TILENCA_SKIP_IF(cpu->data[at->d] == cpu->data[at->r]);
@@ -182,6 +186,7 @@ TILENCA_OP(nop) {
 TILENCA_OP(sleep) {
     if (cpu->sleep_enabled) {
         cpu->asleep = true;
+        cpu->bus->sleep_changed(true, cycle);
         cpu->end_soon();
     }
     TILENCA_NEXT(1, 1);
@@ -193,6 +198,11 @@ TILENCA_OP(wdr) {
 // Without a debugger attached, BREAK is a NOP.
 TILENCA_OP(break_) {
     TILENCA_NEXT(1, 1);
+}
+// Lies over an instruction that a debugger wants to hear of.
+TILENCA_OP(trap) {
+    cpu->trap_hit = true;
+    return leave(cpu, at, cycle, carry, zero, nvh);
 }
 TILENCA_OP(illegal) {
     return stop(cpu, at, cycle, carry, zero, nvh, "illegal instruction");

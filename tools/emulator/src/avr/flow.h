@@ -44,6 +44,7 @@ TILENCA_OP(nop);
 TILENCA_OP(sleep);
 TILENCA_OP(wdr);
 TILENCA_OP(break_);
+TILENCA_OP(trap);
 TILENCA_OP(illegal);
 TILENCA_OP(erased);
 TILENCA_OP(beyond_flash);

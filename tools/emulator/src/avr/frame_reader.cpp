@@ -6,11 +6,12 @@ namespace tilenca::avr {
 
 namespace {
 
-bool majority(const Line& line, const Sampling& sampling, unsigned bit) {
+// The bits must be asked for in order.
+bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
     int high = 0;
-    for (int back = 0; back < 3; back++) {
+    for (int back = 2; back >= 0; back--) {
         const double when = sampling.decided(bit) - back * sampling.period;
-        high += line.level_at(static_cast<uint64_t>(std::floor(when)));
+        high += line.at(static_cast<uint64_t>(std::floor(when)));
     }
     return high >= 2;
 }
@@ -32,7 +33,8 @@ uint16_t FrameFormat::encode(uint16_t data) const {
     return static_cast<uint16_t>(bits | ((1u << stop_bits) - 1) << at);
 }
 
-ReceivedFrame read_frame(const Line& line, const Sampling& sampling, const FrameFormat& format) {
+ReceivedFrame read_frame(const Line& wire, const Sampling& sampling, const FrameFormat& format) {
+    Line::Levels line(wire);
     ReceivedFrame frame;
     frame.started = !majority(line, sampling, 0);
     if (!frame.started) {

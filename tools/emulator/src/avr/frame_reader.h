@@ -20,6 +20,7 @@ struct FrameFormat {
     // The bits on the wire, first sent lowest.
     uint16_t encode(uint16_t data) const;
     bool parity_of(uint16_t data) const;
+    void state(Archive& archive) { archive(data_bits, parity, stop_bits); }
 };
 
 struct Sampling {
@@ -31,6 +32,7 @@ struct Sampling {
     double decided(unsigned index) const {
         return start + period * (index * samples_per_bit + samples_per_bit / 2 + 1);
     }
+    void state(Archive& archive) { archive(start, period, samples_per_bit); }
 };
 
 struct ReceivedFrame {

@@ -2,6 +2,8 @@
 
 #include "avr/pin_registers.h"
 
+#include <algorithm>
+
 namespace tilenca::avr {
 
 namespace {
@@ -88,7 +90,11 @@ uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t la
     const auto index = static_cast<uint8_t>(&port - ports_.data());
     for (uint8_t bit = 0; port.taken >> bit != 0; bit++) {
         if (port.sources[bit] != nullptr && (port.taken >> bit & 1) != 0) {
-            const bool high = port.sources[bit]->pin_level({index, bit}, cycle);
+            bool high = port.sources[bit]->pin_level({index, bit}, cycle);
+            if (port.modulators[bit] != nullptr) {
+                const bool other = port.modulators[bit]->pin_level({index, bit}, cycle);
+                high = (latch >> bit & 1) != 0 ? high || other : high && other;
+            }
             driven = static_cast<uint8_t>((driven & ~(1 << bit)) | high << bit);
         }
     }
@@ -107,14 +113,18 @@ void Gpio::update(Port& port, uint64_t cycle) {
         // What a USART has taken over is announced by it alone.
         const bool ours = (port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr;
         if ((changed & port.watched_out) >> bit & 1 && ours) {
-            port.listeners[bit]->edge({index, bit}, cycle, (after >> bit & 1) != 0);
+            tell({index, bit}, cycle, (after >> bit & 1) != 0);
         }
     }
     pins_changed(port, before, after, cycle);
 }
 
 void Gpio::announce(PinId pin, uint64_t cycle, bool level) {
-    if (EdgeListener* listener = ports_[pin.port].listeners[pin.bit]; listener != nullptr) {
+    tell(pin, cycle, level);
+}
+
+void Gpio::tell(PinId pin, uint64_t cycle, bool level) {
+    for (EdgeListener* listener : ports_[pin.port].listeners[pin.bit]) {
         listener->edge(pin, cycle, level);
     }
 }
@@ -124,17 +134,29 @@ void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycl
     update(port, cycle);
     if (as_output) {
         port.taken |= bit_of(pin);
-        port.sources[pin.bit] = source;
+        drive_again(pin, source);
     }
     output_changes_++;
     update(port, cycle);
 }
 
-void Gpio::release(PinId pin, uint64_t cycle) {
+void Gpio::drive_again(PinId pin, PinSource* source) {
+    Port& port = ports_[pin.port];
+    PinSource*& first = port.sources[pin.bit];
+    (first == nullptr || first == source ? first : port.modulators[pin.bit]) = source;
+}
+
+void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
     Port& port = ports_[pin.port];
     const bool was_silent = (port.taken & bit_of(pin)) != 0 && port.sources[pin.bit] == nullptr;
-    port.taken &= static_cast<uint8_t>(~bit_of(pin));
-    port.sources[pin.bit] = nullptr;
+    PinSource *&first = port.sources[pin.bit], *&second = port.modulators[pin.bit];
+    if (second != nullptr && source != nullptr) { // the other one stays
+        first = first == source ? second : first;
+    } else {
+        port.taken &= static_cast<uint8_t>(~bit_of(pin));
+        first = nullptr;
+    }
+    second = nullptr;
     output_changes_++;
     update(port, cycle);
     if (was_silent) {
@@ -146,6 +168,7 @@ Line& Gpio::attach_line(PinId pin) {
     Port& port = ports_[pin.port];
     port.lines[pin.bit] = std::make_unique<Line>();
     port.has_lines |= bit_of(pin);
+    update_watched(core_.cpu.cycle);
     return *port.lines[pin.bit];
 }
 
@@ -163,13 +186,59 @@ void Gpio::hold_input(PinId pin, bool level, uint64_t cycle) {
 }
 
 void Gpio::listen(PinId pin, EdgeListener* listener) {
-    ports_[pin.port].listeners[pin.bit] = listener;
-    ports_[pin.port].watched_out |= bit_of(pin);
+    Port& port = ports_[pin.port];
+    port.listeners[pin.bit].push_back(listener);
+    port.watched_out |= bit_of(pin);
+    update_watched(core_.cpu.cycle);
+}
+
+void Gpio::ignore(PinId pin, EdgeListener* listener) {
+    Port& port = ports_[pin.port];
+    auto& all = port.listeners[pin.bit];
+    all.erase(std::remove(all.begin(), all.end(), listener), all.end());
+    if (all.empty()) {
+        port.watched_out &= static_cast<uint8_t>(~bit_of(pin));
+    }
+    update_watched(core_.cpu.cycle);
+}
+
+void Gpio::watch(PinId pin, PinWatcher* watcher, uint64_t cycle) {
+    Port& port = ports_[pin.port];
+    if (port.watchers[pin.bit] == watcher) {
+        return;
+    }
+    port.watchers[pin.bit] = watcher;
+    port.watched = static_cast<uint8_t>((port.watched & ~bit_of(pin)) | (watcher != nullptr) << pin.bit);
+    update_watched(cycle);
+}
+
+bool Gpio::is_observed(PinId pin) const {
+    const Port& port = ports_[pin.port];
+    return ((port.interrupting | port.watched | port.watched_out) >> pin.bit & 1) != 0;
+}
+
+void Gpio::tell_sources() {
+    for (Port& port : ports_) {
+        for (unsigned bit = 0; port.taken >> bit != 0; bit++) {
+            if (port.sources[bit] != nullptr) {
+                port.sources[bit]->observers_changed();
+            }
+            if (port.modulators[bit] != nullptr) {
+                port.modulators[bit]->observers_changed();
+            }
+        }
+    }
 }
 
 bool Gpio::level(PinId pin, uint64_t cycle) {
     update(ports_[pin.port], cycle);
     return (ports_[pin.port].levels >> pin.bit & 1) != 0;
+}
+
+bool Gpio::input_at(PinId pin, uint64_t cycle) const {
+    const Port& port = ports_[pin.port];
+    const bool held = (port.held >> pin.bit & 1) != 0;
+    return held && (port.lines[pin.bit] == nullptr || port.lines[pin.bit]->level_at(cycle));
 }
 
 bool Gpio::is_output(PinId pin) const {
@@ -182,11 +251,34 @@ bool Gpio::port_bit(PinId pin) const {
 
 void Gpio::reset(uint64_t cycle) {
     for (Port& port : ports_) {
-        port.taken = port.watched_in = 0;
+        port.taken = port.interrupting = port.watched_in = port.watched = 0;
+        port.watchers.fill(nullptr);
         port.sources.fill(nullptr);
+        port.modulators.fill(nullptr);
         update(port, cycle);
     }
     core_.schedule.cancel(Slot::Lines);
+}
+
+void Gpio::state(Archive& archive) {
+    for (Port& port : ports_) {
+        archive(port.written, port.ddr_before, port.latch_before, port.levels, port.held, port.taken,
+                port.interrupting, port.watched, port.watched_in, port.has_lines);
+        for (unsigned bit = 0; bit < 8; bit++) {
+            if ((port.has_lines >> bit & 1) != 0) {
+                if (port.lines[bit] == nullptr) {
+                    port.lines[bit] = std::make_unique<Line>();
+                }
+                archive(*port.lines[bit]);
+            }
+        }
+        if (archive.loading()) { // they enter themselves again
+            port.sources.fill(nullptr);
+            port.modulators.fill(nullptr);
+            port.watchers.fill(nullptr);
+        }
+    }
+    archive(output_changes_);
 }
 
 } // namespace tilenca::avr

@@ -8,6 +8,7 @@
 #include "avr/peripheral.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 
 namespace tilenca::avr {
@@ -35,6 +36,14 @@ struct EdgeListener {
 struct PinSource {
     virtual ~PinSource() = default;
     virtual bool pin_level(PinId pin, uint64_t cycle) = 0;
+    // Somebody began or ceased to ask for the moments at which the pin changes.
+    virtual void observers_changed() = 0;
+};
+
+// Told of every change of a pin, whoever drives it, when it happens.
+struct PinWatcher {
+    virtual ~PinWatcher() = default;
+    virtual void pin_changed(PinId pin, uint64_t cycle, bool level) = 0;
 };
 
 class Gpio : public Peripheral {
@@ -58,15 +67,34 @@ class Gpio : public Peripheral {
     void hold_input(PinId pin, bool level, uint64_t cycle);
 
     void listen(PinId pin, EdgeListener* listener);
+    void ignore(PinId pin, EdgeListener* listener);
+    // A peripheral that takes its input from a pin; at most one for each. Null: none any more.
+    void watch(PinId pin, PinWatcher* watcher, uint64_t cycle);
+    // A watcher enters itself again after its state has been loaded.
+    void watch_again(PinId pin, PinWatcher* watcher) { ports_[pin.port].watchers[pin.bit] = watcher; }
+    // Whether a change of the pin must be known when it happens.
+    bool is_observed(PinId pin) const;
+    // A pin that a timer drives has changed.
+    void source_changed(PinId pin, uint64_t cycle) { update(ports_[pin.port], cycle); }
+    // An edge of INT0 starts a conversion.
+    void on_int0(std::function<void(uint64_t)> call) { int0_ = std::move(call); }
+    void state(Archive& archive) override;
     // Announces a level on an output that a USART has taken over, now or later.
     void announce(PinId pin, uint64_t cycle, bool level);
     // A USART or timer takes a pin from its port, or gives it back (null). A USART's transmitter needs no
     // source: nobody reads its pin back.
     void take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycle);
-    void release(PinId pin, uint64_t cycle);
+    // source: who gives it back, where two may have it.
+    void release(PinId pin, uint64_t cycle, const PinSource* source = nullptr);
+    // A source enters itself again after its state has been loaded.
+    void drive_again(PinId pin, PinSource* source);
 
     bool level(PinId pin, uint64_t cycle);
+    // As of when somebody looked last.
+    bool last_level(PinId pin) const { return (ports_[pin.port].levels >> pin.bit & 1) != 0; }
     bool is_output(PinId pin) const;
+    // What comes from outside, at a time that may lie a little back.
+    bool input_at(PinId pin, uint64_t cycle) const;
     bool port_bit(PinId pin) const;
     // Counts every write that changed an output: cheap to compare, to know whether to look at the pins again.
     uint64_t output_changes() const { return output_changes_; }
@@ -77,13 +105,18 @@ class Gpio : public Peripheral {
         uint64_t written = 0; // cycle of the last write to any of the three
         uint8_t ddr_before = 0, latch_before = 0;
         uint8_t levels = 0xFF;
-        uint8_t held = 0xFF;     // levels given from outside
-        uint8_t taken = 0;       // outputs that a peripheral drives
-        uint8_t watched_out = 0; // outputs with a listener
-        uint8_t watched_in = 0;  // inputs whose edges raise interrupts
+        uint8_t held = 0xFF;      // levels given from outside
+        uint8_t taken = 0;        // outputs that a peripheral drives
+        uint8_t watched_out = 0;  // outputs with a listener
+        uint8_t interrupting = 0; // pins whose edges raise interrupts
+        uint8_t watched = 0;      // pins that a peripheral takes its input from
+        uint8_t watched_in = 0;   // inputs on a line of which the next edge must be known
         uint8_t has_lines = 0;
         std::array<PinSource*, 8> sources{};
-        std::array<EdgeListener*, 8> listeners{};
+        // The output compare modulator: a second source; PORT decides between AND (0) and OR (1).
+        std::array<PinSource*, 8> modulators{};
+        std::array<std::vector<EdgeListener*>, 8> listeners{};
+        std::array<PinWatcher*, 8> watchers{};
         std::array<std::unique_ptr<Line>, 8> lines;
     };
 
@@ -97,7 +130,9 @@ class Gpio : public Peripheral {
     uint8_t pins_as_read(Port& port, uint64_t cycle);
     void update(Port& port, uint64_t cycle);
     void pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t cycle);
-    void external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift);
+    void tell(PinId pin, uint64_t cycle, bool level);
+    void tell_sources();
+    void external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift, uint64_t cycle);
     void pin_change(unsigned bank, uint8_t changed);
     void update_requests();
     uint8_t external_watched() const;
@@ -107,6 +142,7 @@ class Gpio : public Peripheral {
 
     std::array<Port, kPorts> ports_;
     uint64_t output_changes_ = 0;
+    std::function<void(uint64_t)> int0_ = [](uint64_t) {};
 };
 
 } // namespace tilenca::avr

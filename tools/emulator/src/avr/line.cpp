@@ -54,4 +54,10 @@ void Line::forget_before(uint64_t cycle) {
     }
 }
 
+void Line::state(Archive& archive) {
+    edges_.erase(edges_.begin(), edges_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+    archive(edges_, before_);
+}
+
 } // namespace tilenca::avr

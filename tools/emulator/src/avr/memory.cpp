@@ -35,8 +35,20 @@ TILENCA_OP(write_bit_slow) {
 }
 
 TILENCA_OP(load_program_slow) {
-    cpu->data[at->d] = cpu->bus->read_program_memory(cpu->flash_address);
+    const auto word = static_cast<uint32_t>(at - cpu->program);
+    cpu->data[at->d] = cpu->bus->read_program_memory(word, cpu->flash_address);
     TILENCA_NEXT(1, 3);
+}
+
+// A push that deepens the stack, or is not into SRAM.
+TILENCA_OP(push_slow) {
+    const uint16_t top = pair(cpu, kStackPointer);
+    if (!cpu->grow_stack(top, top)) {
+        return leave(cpu, at, cycle, carry, zero, nvh);
+    }
+    set_pair(cpu, kStackPointer, top - 1u);
+    cpu->address = top;
+    return store_slow<1, 2>(cpu, at, cycle, carry, zero, nvh);
 }
 
 uint32_t far_z(const Cpu* cpu) {
@@ -56,7 +68,7 @@ uint32_t far_z(const Cpu* cpu) {
 
 #define TILENCA_LOAD_PROGRAM(address_expression)                                                             \
     const uint32_t address = (address_expression);                                                           \
-    if (__builtin_expect(cpu->flash == nullptr, 0)) {                                                        \
+    if (__builtin_expect(address >= cpu->flash_limit, 0)) {                                                  \
         cpu->flash_address = address;                                                                        \
         return load_program_slow(cpu, at, cycle, carry, zero, nvh);                                          \
     }                                                                                                        \
@@ -129,8 +141,12 @@ TILENCA_OP(sts) {
 }
 TILENCA_OP(push) {
     const uint16_t top = pair(cpu, kStackPointer);
+    if (__builtin_expect(!is_plain_push(cpu, top, 1), 0)) {
+        return push_slow(cpu, at, cycle, carry, zero, nvh);
+    }
     set_pair(cpu, kStackPointer, top - 1u);
-    TILENCA_STORE(top);
+    cpu->data[top] = cpu->data[at->d];
+    TILENCA_NEXT(1, 2);
 }
 TILENCA_OP(pop) {
     const auto top = static_cast<uint16_t>(pair(cpu, kStackPointer) + 1);
@@ -139,7 +155,7 @@ TILENCA_OP(pop) {
 }
 
 TILENCA_OP(in) {
-    if (__builtin_expect(cpu->special[at->k], 0)) {
+    if (__builtin_expect(cpu->special[at->k] & kReadsThroughBus, 0)) {
         cpu->address = at->k;
         return load_slow<1, 1>(cpu, at, cycle, carry, zero, nvh);
     }
@@ -147,7 +163,7 @@ TILENCA_OP(in) {
     TILENCA_NEXT(1, 1);
 }
 TILENCA_OP(out) {
-    if (__builtin_expect(cpu->special[at->k], 0)) {
+    if (__builtin_expect(cpu->special[at->k] & kWritesThroughBus, 0)) {
         cpu->address = at->k;
         return store_slow<1, 1>(cpu, at, cycle, carry, zero, nvh);
     }
@@ -155,14 +171,14 @@ TILENCA_OP(out) {
     TILENCA_NEXT(1, 1);
 }
 TILENCA_OP(sbi) {
-    if (cpu->special[at->k]) {
+    if ((cpu->special[at->k] & kWritesThroughBus) != 0) {
         return write_bit_slow<true>(cpu, at, cycle, carry, zero, nvh);
     }
     cpu->data[at->k] |= at->r;
     TILENCA_NEXT(1, 2);
 }
 TILENCA_OP(cbi) {
-    if (cpu->special[at->k]) {
+    if ((cpu->special[at->k] & kWritesThroughBus) != 0) {
         return write_bit_slow<false>(cpu, at, cycle, carry, zero, nvh);
     }
     cpu->data[at->k] &= static_cast<uint8_t>(~at->r);

@@ -69,6 +69,12 @@ inline bool is_sram(uint16_t address) {
     return static_cast<uint16_t>(address - kSramStart) < kSramBytes;
 }
 
+// Whether `count` bytes pushed from `top` down go where the stack has been before.
+inline bool is_plain_push(const Cpu* cpu, uint16_t top, uint16_t count) {
+    const auto lowest = static_cast<uint16_t>(top - count + 1);
+    return static_cast<uint16_t>(lowest - cpu->stack_low) + count <= cpu->stack_room;
+}
+
 // Memory outside SRAM. They keep the state in `cpu` (SREG is part of memory) and add to cpu->stall_cycles.
 uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh);
 void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint32_t carry, uint32_t zero,

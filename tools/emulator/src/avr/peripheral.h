@@ -20,6 +20,10 @@ class Warnings {
         }
     }
     const std::vector<std::string>& list() const { return list_; }
+    void state(Archive& archive) {
+        archive(list_);
+        said_ = {list_.begin(), list_.end()};
+    }
 
   private:
     std::set<std::string> said_;
@@ -48,12 +52,37 @@ class Peripheral {
     virtual void interrupt_taken(uint8_t /*vector*/) {}
     // All registers are zero already.
     virtual void reset(uint64_t cycle) = 0;
+    // What it holds besides its registers, which lie in data memory.
+    virtual void state(Archive& archive) = 0;
+
+    // Its clock stands while the chip sleeps deeply, or saves power.
+    void stop_clock(uint64_t cycle) {
+        if (!stands_) {
+            clock_stops(cycle);
+            stands_ = true;
+            stands_since_ = cycle;
+        }
+    }
+    void start_clock(uint64_t cycle) {
+        if (stands_) {
+            stands_ = false;
+            clock_starts(cycle, cycle - stands_since_);
+        }
+    }
+    void clock_state(Archive& archive) { archive(stands_, stands_since_); }
 
   protected:
+    virtual void clock_stops(uint64_t /*cycle*/) {}
+    virtual void clock_starts(uint64_t /*cycle*/, uint64_t /*stood*/) {}
+    bool clock_stands() const { return stands_; }
     // The stored bytes of registers lie in data memory, like those of registers nobody answers for.
     uint8_t& byte(uint16_t address) const { return core_.cpu.data[address]; }
 
     Core core_;
+
+  private:
+    bool stands_ = false;
+    uint64_t stands_since_ = 0;
 };
 
 } // namespace tilenca::avr

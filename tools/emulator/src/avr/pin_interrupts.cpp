@@ -37,12 +37,19 @@ uint8_t Gpio::sense(unsigned number) const {
     return control >> (number % 4 * 2) & 3;
 }
 
-void Gpio::external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift) {
+void Gpio::external_interrupts(unsigned first, uint8_t before, uint8_t after, unsigned shift,
+                               uint64_t cycle) {
     for (unsigned i = 0; i < 4; i++) {
         const bool was = (before >> (i + shift) & 1) != 0, is = (after >> (i + shift) & 1) != 0;
         const uint8_t how = sense(first + i);
-        if (was != is && (how == 1 || (how == 2 && !is) || (how == 3 && is))) {
+        // In deep sleep, the edges of INT4..7 go unnoticed: they are found with the clock that stands.
+        const bool noticed = first == 0 || !core_.cpu.deeply;
+        if (was != is && noticed && (how == 1 || (how == 2 && !is) || (how == 3 && is))) {
+            const bool fresh = (byte(kEifr) >> (first + i) & 1) == 0;
             byte(kEifr) |= static_cast<uint8_t>(1 << (first + i));
+            if (first + i == 0 && fresh) {
+                int0_(cycle);
+            }
         }
     }
 }
@@ -53,20 +60,25 @@ void Gpio::pin_change(unsigned bank, uint8_t changed) {
     }
 }
 
-void Gpio::pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t) {
+void Gpio::pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_t cycle) {
     const auto changed = static_cast<uint8_t>(before ^ after);
-    const auto index = &port - ports_.data();
+    const auto index = static_cast<uint8_t>(&port - ports_.data());
+    for (uint8_t bit = 0; (changed & port.watched) >> bit != 0; bit++) {
+        if (((changed & port.watched) >> bit & 1) != 0 && port.watchers[bit] != nullptr) {
+            port.watchers[bit]->pin_changed({index, bit}, cycle, (after >> bit & 1) != 0);
+        }
+    }
     if (index == kPortB) {
         pin_change(0, changed);
     } else if (index == kPortE) {
         pin_change(1, changed & 1);
-        external_interrupts(4, before, after, 4);
+        external_interrupts(4, before, after, 4, cycle);
     } else if (index == kPortJ) {
         pin_change(1, static_cast<uint8_t>(changed << 1));
     } else if (index == kPortK) {
         pin_change(2, changed);
     } else if (index == kPortD) {
-        external_interrupts(0, before, after, 0);
+        external_interrupts(0, before, after, 0, cycle);
     } else {
         return;
     }
@@ -103,14 +115,14 @@ void Gpio::update_watched(uint64_t cycle) {
     for (unsigned i = 0; i < kPorts; i++) {
         before[i] = ports_[i].watched_in;
     }
-    ports_[kPortB].watched_in = byte(kPcmsk0);
-    ports_[kPortJ].watched_in = byte(kPcmsk0 + 1) >> 1;
-    ports_[kPortE].watched_in = (byte(kPcmsk0 + 1) & 1) | (external & 0xF0);
-    ports_[kPortK].watched_in = byte(kPcmsk0 + 2);
-    ports_[kPortD].watched_in = external & 0x0F;
+    ports_[kPortB].interrupting = byte(kPcmsk0);
+    ports_[kPortJ].interrupting = byte(kPcmsk0 + 1) >> 1 & 0x7F;
+    ports_[kPortE].interrupting = (byte(kPcmsk0 + 1) & 1) | (external & 0xF0);
+    ports_[kPortK].interrupting = byte(kPcmsk0 + 2);
+    ports_[kPortD].interrupting = external & 0x0F;
     for (unsigned i = 0; i < kPorts; i++) {
         Port& port = ports_[i];
-        port.watched_in &= port.has_lines;
+        port.watched_in = (port.interrupting | port.watched | port.watched_out) & port.has_lines;
         // What happened while nobody watched raises nothing now.
         if (const uint8_t fresh = port.watched_in & ~before[i]; fresh != 0) {
             port.levels =
@@ -121,6 +133,7 @@ void Gpio::update_watched(uint64_t cycle) {
         }
     }
     schedule_lines(cycle);
+    tell_sources();
 }
 
 void Gpio::schedule_lines(uint64_t cycle) {

@@ -4,6 +4,7 @@
 #include "avr/instruction.h"
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace tilenca::avr {
@@ -25,8 +26,17 @@ class Program {
     const uint8_t* bytes() const { return bytes_.data(); }
     uint16_t word(uint32_t index) const;
 
+    // Lays a trap over the instruction at a word, or takes it away.
+    void set_trap(uint32_t word, bool set);
+    // Puts the instruction under a trap in its place for a while, or back under it.
+    void lift_trap(uint32_t word, bool lifted);
+    const std::set<uint32_t>& traps() const { return traps_; }
+
   private:
+    void decode_word(uint32_t index);
+
     std::vector<uint8_t> bytes_;
+    std::set<uint32_t> traps_;
     std::vector<Instruction> decoded_; // two more than flash has: what runs off its end is caught there
 };
 

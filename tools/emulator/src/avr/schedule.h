@@ -29,6 +29,8 @@ enum class Slot : uint8_t {
     Adc,
     Watchdog,
     ProgramMemory,
+    Spi,
+    Twi,
     Count
 };
 
@@ -52,22 +54,38 @@ class Schedule {
     }
     void cancel(Slot slot) { set(slot, kNever); }
     uint64_t due(Slot slot) const { return due_[static_cast<size_t>(slot)]; }
+    // What is due in that slot waits until its clock runs again, and then as much longer as it stood.
+    void stop(Slot slot) {
+        stopped_ |= 1u << static_cast<unsigned>(slot);
+        next_known_ = false;
+    }
+    void go_on(Slot slot, uint64_t stood) {
+        stopped_ &= ~(1u << static_cast<unsigned>(slot));
+        const uint64_t was = due(slot);
+        set(slot, was == kNever ? kNever : was + stood);
+    }
+    void state(Archive& archive) {
+        archive(due_, stopped_);
+        next_known_ = false;
+    }
 
     // The earliest slot and its time.
     Slot next(uint64_t* cycle) {
         if (!next_known_) {
             find_next();
         }
-        *cycle = due_[next_];
+        *cycle = next_due_;
         return static_cast<Slot>(next_);
     }
 
   private:
     void find_next() {
         next_ = 0;
-        for (size_t i = 1; i < kSlots; i++) {
-            if (due_[i] < due_[next_]) {
+        next_due_ = kNever;
+        for (size_t i = 0; i < kSlots; i++) {
+            if (due_[i] < next_due_ && (stopped_ >> i & 1) == 0) {
                 next_ = i;
+                next_due_ = due_[i];
             }
         }
         next_known_ = true;
@@ -76,6 +94,8 @@ class Schedule {
     Cpu& cpu_;
     std::array<uint64_t, kSlots> due_;
     size_t next_ = 0;
+    uint64_t next_due_ = kNever;
+    uint32_t stopped_ = 0; // a bit per slot
     bool next_known_ = false;
 };
 

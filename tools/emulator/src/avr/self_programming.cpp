@@ -3,6 +3,7 @@
 #include "avr/ops.h"
 #include "avr/vectors.h"
 
+#include <cstdio>
 #include <cstring>
 
 namespace tilenca::avr {
@@ -12,13 +13,14 @@ namespace {
 constexpr uint16_t kSpmcsr = 0x57;
 constexpr uint8_t kSpmie = 0x80, kRwwsb = 0x40, kRwwsre = 0x10, kBlbset = 0x08, kPgwrt = 0x04, kPgers = 0x02;
 constexpr uint8_t kSigrd = 0x20, kSpmen = 0x01, kCommand = 0x3F;
+constexpr uint8_t kCalibration = 0x80; // of the internal oscillator; each chip has its own
 constexpr uint64_t kArmedCycles = 4;
 constexpr uint64_t kPageCycles = 64'000; // 4 ms; timed by the chip's own oscillator
 
 } // namespace
 
-SelfProgramming::SelfProgramming(const Core& core, std::shared_ptr<Program>& program)
-    : Peripheral(core), program_(program) {
+SelfProgramming::SelfProgramming(const Core& core, std::shared_ptr<Program>& program, Fuses& fuses)
+    : Peripheral(core), program_(program), fuses_(fuses) {
     std::memset(buffer_, 0xFF, sizeof buffer_);
 }
 
@@ -45,8 +47,11 @@ void SelfProgramming::write(uint16_t, uint8_t value, uint64_t cycle) {
 
 uint32_t SelfProgramming::execute(uint32_t word, uint64_t cycle, bool advance_z) {
     Cpu& cpu = core_.cpu;
-    if (word < kBootStartWord) {
-        core_.warnings.once("SPM outside the boot section (from 0x3E000 on): no effect");
+    if (word < fuses_.boot_start()) {
+        char text[80];
+        std::snprintf(text, sizeof text, "SPM outside the boot section (from 0x%05X on): no effect",
+                      2 * fuses_.boot_start());
+        core_.warnings.once(text);
         return 1;
     }
     if (cycle > armed_until_ || busy_) {
@@ -71,16 +76,37 @@ void SelfProgramming::start(uint8_t command, uint32_t z, uint64_t cycle) {
         buffer_[z % kPageBytes | 1u] = core_.cpu.data[1];
         byte(kSpmcsr) &= static_cast<uint8_t>(~kRwwsb); // loading a page opens the flash again
     } else if (command == (kSpmen | kPgers) || command == (kSpmen | kPgwrt)) {
+        if (refuses(z)) {
+            return;
+        }
         change_page(z / kPageBytes * kPageBytes, command == (kSpmen | kPgers));
         byte(kSpmcsr) |= kRwwsb;
         busy_ = true;
-        core_.schedule.set(Slot::ProgramMemory, cycle + kPageCycles);
+        core_.schedule.set(Slot::ProgramMemory, cycle + kPageCycles / core_.cpu.clock_divisor);
     } else if (command == (kSpmen | kRwwsre)) {
         byte(kSpmcsr) &= static_cast<uint8_t>(~kRwwsb);
         std::memset(buffer_, 0xFF, sizeof buffer_);
     } else if (command == (kSpmen | kBlbset)) {
-        core_.warnings.once("lock bits written by SPM: kept out of force");
+        write_lock();
     }
+}
+
+bool SelfProgramming::refuses(uint32_t address) {
+    const bool boot = is_boot_section(address);
+    if (!fuses_.forbids_writing(boot)) {
+        return false;
+    }
+    char text[96];
+    std::snprintf(text, sizeof text,
+                  "SPM at flash address 0x%05X in the %s section, which lock bits 0x%02X forbid", address,
+                  boot ? "boot" : "application", fuses_.lock);
+    core_.cpu.fail(text);
+    return true;
+}
+
+// R0 brings the new boot lock bits; a lock bit can only be programmed.
+void SelfProgramming::write_lock() {
+    fuses_.lock &= static_cast<uint8_t>(core_.cpu.data[0] | 0xC3);
 }
 
 void SelfProgramming::change_page(uint32_t page, bool erase) {
@@ -96,6 +122,7 @@ void SelfProgramming::change_page(uint32_t page, bool erase) {
         std::memset(buffer_, 0xFF, sizeof buffer_);
     }
     core_.cpu.use(*program_);
+    changed_ = true;
 }
 
 void SelfProgramming::on_event(Slot, uint64_t) {
@@ -116,13 +143,29 @@ bool SelfProgramming::reads_row() const {
     return command == (kSpmen | kBlbset) || command == (kSpmen | kSigrd);
 }
 
-uint8_t SelfProgramming::read_flash(uint32_t address) {
+uint8_t SelfProgramming::read_row(uint32_t address) const {
+    if ((byte(kSpmcsr) & kSigrd) != 0) {
+        constexpr uint8_t kRow[6] = {0x1E, kCalibration, 0x98, 0xFF, 0x01, 0xFF};
+        return address < 6 ? kRow[address] : 0xFF;
+    }
+    const uint8_t bytes[4] = {fuses_.low, fuses_.lock, fuses_.extended, fuses_.high};
+    return bytes[address & 3];
+}
+
+uint8_t SelfProgramming::read_flash(uint32_t word, uint32_t address) {
     if (reads_row()) {
-        core_.warnings.once("signature, fuses and lock bits (LPM after SIGRD or BLBSET): read as 0xFF");
+        const uint8_t value = read_row(address);
+        finish_command();
+        update_access();
+        return value;
+    }
+    const bool from_boot = word >= fuses_.boot_start(), to_boot = is_boot_section(address);
+    if (!to_boot && (byte(kSpmcsr) & kRwwsb) != 0) {
+        core_.warnings.once("flash read before it was opened again after a page (RWWSRE): reads as 0xFF");
         return 0xFF;
     }
-    if (address < 2 * kBootStartWord) {
-        core_.warnings.once("flash read before it was opened again after a page (RWWSRE): reads as 0xFF");
+    if (from_boot != to_boot && fuses_.forbids_reading(to_boot)) {
+        core_.warnings.once("flash read across sections, which the lock bits forbid: reads as 0xFF");
         return 0xFF;
     }
     return program_->bytes()[address];
@@ -130,8 +173,10 @@ uint8_t SelfProgramming::read_flash(uint32_t address) {
 
 // Below the boot section flash cannot be read from a page's start until the program asks for it.
 void SelfProgramming::update_access() {
-    const bool closed = (byte(kSpmcsr) & kRwwsb) != 0 || reads_row();
-    core_.cpu.flash = closed ? nullptr : program_->bytes();
+    const bool closed = (byte(kSpmcsr) & kRwwsb) != 0 || reads_row() || fuses_.forbids_reading(false);
+    core_.cpu.flash = program_->bytes();
+    core_.cpu.flash_limit =
+        closed ? 0 : (fuses_.forbids_reading(true) ? 2 * fuses_.boot_start() : kFlashBytes);
 }
 
 void SelfProgramming::update_requests() {
@@ -144,6 +189,11 @@ void SelfProgramming::reset(uint64_t) {
     busy_ = false;
     core_.schedule.cancel(Slot::ProgramMemory);
     update_access();
+}
+
+void SelfProgramming::state(Archive& archive) {
+    archive.bytes(buffer_, sizeof buffer_);
+    archive(armed_until_, busy_, fuses_.low, fuses_.high, fuses_.extended, fuses_.lock);
 }
 
 } // namespace tilenca::avr

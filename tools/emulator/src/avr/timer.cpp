@@ -2,6 +2,8 @@
 
 #include "avr/vectors.h"
 
+#include <algorithm>
+
 namespace tilenca::avr {
 
 namespace {
@@ -56,7 +58,6 @@ constexpr WaveMode kWideModes[16] = {
 
 // Offsets of a wide timer's registers from TCCRnA: TCCRnC, then pairs of bytes from here on.
 constexpr unsigned kWideForce = 2, kWideCount = 4, kWideCapture = 6, kWideCompare = 8, kWideEnd = 14;
-constexpr uint8_t kCaptureSetup = 0xC0; // ICNC and ICES in TCCRnB
 constexpr unsigned kNarrowCount = 2, kNarrowCompare = 3, kNarrowEnd = 5;
 
 } // namespace
@@ -90,12 +91,23 @@ std::vector<uint8_t> Timer::vectors() const {
 }
 
 void Timer::sync(uint64_t cycle) {
+    if (clock_stands()) {
+        return;
+    }
     if (divisor_ != 0 && cycle > synced_) {
         if (const uint64_t ticks = tick_index(cycle) - tick_index(synced_); ticks != 0) {
-            counter_.advance(ticks);
+            advance(ticks, cycle);
         }
     }
     synced_ = cycle > synced_ ? cycle : synced_;
+}
+
+void Timer::advance(uint64_t ticks, uint64_t cycle) {
+    const uint8_t before = counter_.flags;
+    counter_.advance(ticks);
+    if ((counter_.flags & ~before & told_flags_) != 0) {
+        on_flags_(cycle);
+    }
 }
 
 uint8_t Timer::read(uint16_t address, uint64_t cycle) {
@@ -140,17 +152,9 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     } else {
         write_value(address - base_, value);
     }
-    warn_of_capture();
     update_requests();
     reschedule();
-}
-
-// Asked only while the clock runs: before that, the mode may not be complete.
-void Timer::warn_of_capture() {
-    const bool asked = (byte(control_b()) & kCaptureSetup) != 0 || (byte(mask_register_) & kFlagCapture) != 0;
-    if (is_wide() && asked && divisor_ != 0 && counter_.mode().top != Top::Capture) {
-        core_.warnings.once("input capture of timer " + std::to_string(number_) + ": nothing is captured");
-    }
+    show_outputs(cycle);
 }
 
 void Timer::write_value(unsigned offset, uint8_t value) {
@@ -203,57 +207,17 @@ void Timer::apply_mode() {
                                 : kNarrowModes[low | (byte(control_b()) >> 1 & 4)]);
 }
 
-// A channel whose COM bits ask for it takes its pin; "toggle" needs a mode whose top is a register.
-void Timer::apply_outputs(uint64_t cycle) {
-    const WaveMode& mode = counter_.mode();
-    for (unsigned i = 0; i < channels(); i++) {
-        uint8_t action = byte(control_a()) >> (6 - 2 * i) & 3;
-        const bool can_toggle = mode.wave < Wave::Fast || (i == 0 && mode.top != Top::Fixed);
-        action = action == 1 && !can_toggle ? 0 : action;
-        counter_.set_output(i, action);
-        if ((action != 0) != driving_[i]) {
-            driving_[i] = action != 0;
-            if (driving_[i]) {
-                gpio_.take_over(pins_[i], this, true, cycle);
-            } else {
-                gpio_.release(pins_[i], cycle);
-            }
-        }
-    }
-}
-
-void Timer::apply_clock(uint64_t) {
+void Timer::apply_clock(uint64_t cycle) {
     const uint8_t select = byte(control_b()) & 7;
     divisor_ = number_ == 2 ? kTimer2Divisors[select] : kDivisors[select];
-    if (number_ != 2 && select >= 6) {
-        core_.warnings.once("timer " + std::to_string(number_) + " clocked from its T pin: stands still");
-    }
+    external_clock_ = number_ != 2 && select >= 6 ? select : 0;
+    watch_inputs(cycle);
 }
 
 void Timer::restart_prescaler(uint64_t cycle) {
     sync(cycle);
     origin_ = cycle;
     reschedule();
-}
-
-bool Timer::pin_level(PinId pin, uint64_t cycle) {
-    sync(cycle);
-    for (unsigned i = 0; i < channels(); i++) {
-        if (pins_[i].port == pin.port && pins_[i].bit == pin.bit) {
-            return counter_.level(i);
-        }
-    }
-    return false;
-}
-
-double Timer::duty(PinId pin, uint64_t cycle) {
-    sync(cycle);
-    for (unsigned i = 0; i < channels(); i++) {
-        if (driving_[i] && pins_[i].port == pin.port && pins_[i].bit == pin.bit) {
-            return counter_.duty(i);
-        }
-    }
-    return -1;
 }
 
 // --- interrupts ---
@@ -276,15 +240,30 @@ void Timer::update_requests() {
 }
 
 void Timer::reschedule() {
-    const auto wanted = static_cast<uint8_t>(byte(mask_register_) & ~counter_.flags);
-    const uint64_t ticks = divisor_ == 0 || wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
-    core_.schedule.set(slot_, ticks == 0 ? kNever : (tick_index(synced_) + ticks) * divisor_ + origin_);
+    const auto wanted = static_cast<uint8_t>((byte(mask_register_) | told_flags_) & ~counter_.flags);
+    uint64_t due = capture_due_;
+    if (divisor_ != 0 && !clock_stands()) {
+        uint64_t ticks = wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
+        if (is_observed()) {
+            const uint64_t change = counter_.ticks_to_change();
+            ticks = ticks == 0 ? change : std::min(ticks, change);
+        }
+        if (ticks != 0) {
+            due = std::min(due, (tick_index(synced_) + ticks) * divisor_ + origin_);
+        }
+    }
+    core_.schedule.set(slot_, due);
 }
 
 void Timer::on_event(Slot, uint64_t cycle) {
+    if (cycle >= capture_due_) {
+        capture_due_ = kNever;
+        capture(cycle);
+    }
     sync(cycle);
     update_requests();
     reschedule();
+    show_outputs(cycle);
 }
 
 void Timer::interrupt_taken(uint8_t vector) {
@@ -303,6 +282,10 @@ void Timer::reset(uint64_t cycle) {
     driving_.fill(false);
     temp_ = 0;
     divisor_ = 0;
+    external_clock_ = 0;
+    comparator_captures_ = false;
+    capture_due_ = kNever;
+    told_flags_ = 0;
     origin_ = synced_ = cycle;
     core_.schedule.cancel(slot_);
 }

@@ -6,9 +6,11 @@
 #include "avr/counter.h"
 #include "avr/gpio.h"
 
+#include <functional>
+
 namespace tilenca::avr {
 
-class Timer : public Peripheral, public PinSource {
+class Timer : public Peripheral, public PinSource, private PinWatcher {
   public:
     Timer(const Core& core, Gpio& gpio, unsigned number);
 
@@ -20,6 +22,15 @@ class Timer : public Peripheral, public PinSource {
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
     bool pin_level(PinId pin, uint64_t cycle) override;
+    void observers_changed() override { reschedule(); }
+    void state(Archive& archive) override;
+
+    // Calls `call` whenever one of the flags in `mask` is set.
+    void on_flags(std::function<void(uint64_t cycle)> call) { on_flags_ = std::move(call); }
+    void tell_of_flags(uint8_t mask, uint64_t cycle);
+    // The analog comparator takes the place of the capture pin, or gives it back.
+    void capture_from_comparator(bool on, uint64_t cycle);
+    void capture_edge(bool level, uint64_t cycle);
 
     // Share of time a pin is high, if this timer drives it; otherwise -1.
     double duty(PinId pin, uint64_t cycle);
@@ -28,17 +39,25 @@ class Timer : public Peripheral, public PinSource {
     bool has_own_prescaler() const { return number_ == 2; }
 
   private:
+    void clock_stops(uint64_t cycle) override;
+    void clock_starts(uint64_t cycle, uint64_t stood) override;
+    void pin_changed(PinId pin, uint64_t cycle, bool level) override;
+    void capture(uint64_t cycle);
+    void watch_inputs(uint64_t cycle);
+    bool captures() const;
+    bool is_observed() const;
+    void show_outputs(uint64_t cycle);
     bool is_wide() const { return number_ == 1 || number_ >= 3; }
     unsigned channels() const { return is_wide() ? 3 : 2; }
     uint16_t control_a() const { return base_; }
     uint16_t control_b() const { return static_cast<uint16_t>(base_ + 1); }
     void sync(uint64_t cycle);
+    void advance(uint64_t ticks, uint64_t cycle);
     uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) / divisor_; }
     void write_control(uint16_t address, uint8_t value, uint64_t cycle);
     void write_value(unsigned offset, uint8_t value);
     uint8_t read_value(unsigned offset);
     void write_wide(unsigned offset, uint16_t value);
-    void warn_of_capture();
     void apply_mode();
     void apply_outputs(uint64_t cycle);
     void apply_clock(uint64_t cycle);
@@ -58,6 +77,11 @@ class Timer : public Peripheral, public PinSource {
     uint32_t divisor_ = 0; // 0: the clock is stopped
     uint64_t origin_ = 0;  // cycle the prescaler counts from
     uint64_t synced_ = 0;
+    uint8_t external_clock_ = 0; // 6: falling edges of the T pin, 7: rising ones, 0: none
+    bool comparator_captures_ = false;
+    uint64_t capture_due_ = kNever; // an edge that the noise canceller has not let pass yet
+    uint8_t told_flags_ = 0;
+    std::function<void(uint64_t)> on_flags_ = [](uint64_t) {};
 };
 
 } // namespace tilenca::avr

@@ -11,18 +11,11 @@ struct Register {
 };
 
 constexpr Register kRegisters[] = {
-    {0x4C, 0x40, "SPI (SPCR)"},
-    {0x4E, 0xFF, "SPI (SPDR)"},
     {0x51, 0xFF, "on-chip debug register (OCDR)"},
-    {0x61, 0x0F, "clock prescaler (CLKPR)"},
-    {0x64, 0xFF, "power reduction (PRR0): everything stays on"},
-    {0x65, 0xFF, "power reduction (PRR1): everything stays on"},
     {0x66, 0xFF, "oscillator calibration (OSCCAL)"},
     {0x74, 0x80, "external memory (XMCRA)"},
+    {0xBA, 0xFE, "TWI as slave (TWAR): nobody addresses it"},
     {0xB6, 0x60, "asynchronous clock of timer 2 (ASSR)"},
-    {0xBB, 0xFF, "TWI (TWDR)"},
-    {0xBC, 0xA0, "TWI (TWCR)"},
-    {0x50, 0x08, "analog comparator interrupt (ACSR)"},
 };
 
 } // namespace

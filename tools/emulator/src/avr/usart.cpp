@@ -102,9 +102,6 @@ void Usart::write(uint16_t address, uint8_t value, uint64_t cycle) {
     case 0:
         sent_flag_ = sent_flag_ && (value & kTxc) == 0;
         byte(address) = value & (kU2x | kMpcm);
-        if ((value & kMpcm) != 0) {
-            core_.warnings.once("USART in multi-processor mode (MPCM): every frame is received");
-        }
         break;
     case 1:
         write_control(value, cycle);
@@ -239,6 +236,12 @@ void Usart::frame_received(uint64_t cycle) {
         await_start(static_cast<uint64_t>(sampling_.decided(0)));
         return;
     }
+    // In multi-processor mode only addresses count: frames whose ninth bit, or else stop bit, is one.
+    const bool is_address = receive_format_.data_bits == 9 ? frame.data > 0xFF : !frame.framing_error;
+    if ((byte(a()) & kMpcm) != 0 && !is_address) {
+        await_start(cycle - sample_cycles());
+        return;
+    }
     // A byte still in the shift register was dealt with when this frame's start bit was seen.
     fifo_[waiting_++] = {frame.data, frame.framing_error, frame.parity_error, lost_};
     lost_ = false;
@@ -292,6 +295,29 @@ void Usart::reset(uint64_t cycle) {
     receiver_ = Receiver::Off;
     baud_origin_ = cycle;
     byte(c()) = 0x06;
+}
+
+void Usart::clock_stops(uint64_t) {
+    core_.schedule.stop(receive_slot_);
+    core_.schedule.stop(transmit_slot_);
+}
+
+// What was being received is garbled; the receiver listens for the next start bit.
+void Usart::clock_starts(uint64_t cycle, uint64_t stood) {
+    baud_origin_ += stood;
+    core_.schedule.go_on(receive_slot_, stood);
+    core_.schedule.go_on(transmit_slot_, stood);
+    if (receiver_ != Receiver::Off) {
+        await_start(cycle);
+    }
+}
+
+void Usart::state(Archive& archive) {
+    archive(baud_origin_, sending_, sent_flag_, buffer_full_, buffer_, receiver_, sampling_, receive_format_,
+            fifo_, waiting_, lost_, last_data_);
+    if (archive.loading() && waiting_ > fifo_.size()) {
+        throw ArchiveError("a receiver holds more than it can");
+    }
 }
 
 } // namespace tilenca::avr

@@ -20,6 +20,7 @@ class Usart : public Peripheral {
     std::vector<uint8_t> vectors() const override;
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
+    void state(Archive& archive) override;
 
     PinId receive_pin() const { return receive_pin_; }
     PinId transmit_pin() const { return transmit_pin_; }
@@ -38,8 +39,11 @@ class Usart : public Peripheral {
         bool framing_error = false;
         bool parity_error = false;
         bool overrun = false; // bytes were lost between the one before and this one
+        void state(Archive& archive) { archive(data, framing_error, parity_error, overrun); }
     };
 
+    void clock_stops(uint64_t cycle) override;
+    void clock_starts(uint64_t cycle, uint64_t stood) override;
     uint16_t a() const { return base_; }
     uint16_t b() const { return static_cast<uint16_t>(base_ + 1); }
     uint16_t c() const { return static_cast<uint16_t>(base_ + 2); }
@@ -71,7 +75,7 @@ class Usart : public Peripheral {
     Receiver receiver_ = Receiver::Off;
     Sampling sampling_{0, 1, 16};
     FrameFormat receive_format_;
-    Received fifo_[3]; // two bytes, and a third that waits in the shift register
+    std::array<Received, 3> fifo_; // two bytes, and a third that waits in the shift register
     unsigned waiting_ = 0;
     bool lost_ = false;
     uint8_t last_data_ = 0;

@@ -42,6 +42,9 @@ void Watchdog::write(uint16_t, uint8_t value, uint64_t cycle) {
         after |= (before & (kWdp3 | 7 | kWde)) |
                  (value & kWde); // it can be switched on, but neither off nor slower
     }
+    if (fuses_.watchdog_always_on()) {
+        after = static_cast<uint8_t>((after | kWde) & ~kWdie);
+    }
     byte(kWdtcsr) = after;
     const bool was_on = (before & (kWde | kWdie)) != 0;
     if (is_on() != was_on || ((before ^ after) & (kWdp3 | 7)) != 0) {
@@ -54,7 +57,8 @@ void Watchdog::restart(uint64_t cycle) {
     const uint8_t control = byte(kWdtcsr);
     const unsigned scale = (control & 7u) | ((control & kWdp3) != 0 ? 8u : 0u);
     const uint64_t ticks = kShortestTicks << (scale > 9 ? 9 : scale);
-    core_.schedule.set(Slot::Watchdog, is_on() ? cycle + ticks * kCyclesPerTick : kNever);
+    core_.schedule.set(Slot::Watchdog,
+                       is_on() ? cycle + ticks * kCyclesPerTick / core_.cpu.clock_divisor : kNever);
 }
 
 // In "interrupt and reset" mode a second time-out resets, if the interrupt of the first still waits.

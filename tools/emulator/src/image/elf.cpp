@@ -12,6 +12,7 @@ constexpr uint16_t kMachineAvr = 83;
 constexpr uint32_t kArchitectureMask = 0x7F, kArchitectureAvr6 = 6;
 constexpr uint32_t kSegmentLoad = 1, kSectionSymbols = 2;
 constexpr uint32_t kFlashEnd = 0x40000, kEepromStart = 0x810000, kEepromBytes = 4096;
+constexpr uint32_t kFuseStart = 0x820000, kLockStart = 0x830000;
 constexpr uint32_t kMostSymbolNameBytes = 4096;
 
 class Reader {
@@ -88,7 +89,11 @@ void read_segment(const Reader& file, uint64_t header, Image& image) {
         }
         image.eeprom.push_back({address - kEepromStart, bytes});
     }
-    // Fuses, lock bits and signature have addresses above: a loader of flash leaves them alone.
+    if (address == kFuseStart) {
+        image.fuses = bytes;
+    } else if (address == kLockStart) {
+        image.lock = bytes;
+    }
 }
 
 void read_symbols(const Reader& file, uint64_t section, uint64_t sections, uint64_t count, Image& image) {
@@ -102,9 +107,12 @@ void read_symbols(const Reader& file, uint64_t section, uint64_t sections, uint6
     const uint64_t names = file.word(strings + 16), names_end = names + file.word(strings + 20);
     for (uint64_t at = offset; at + kSymbolBytes <= uint64_t{offset} + size; at += kSymbolBytes) {
         const unsigned type = file.bytes()[at + 12] & 15;
-        if (type == 1 || type == 2) { // an object or a function
-            image.symbols.push_back(
-                {file.text(names + file.word(at), names_end), file.word(at + 4), file.word(at + 8)});
+        const bool is_defined = file.half(at + 14) != 0;
+        if (type <= 2 && is_defined) { // an object, a function, or an address of the linker's
+            const std::string name = file.text(names + file.word(at), names_end);
+            if (!name.empty()) {
+                image.symbols.push_back({name, file.word(at + 4), file.word(at + 8)});
+            }
         }
     }
 }

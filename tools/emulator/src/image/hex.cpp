@@ -70,6 +70,9 @@ Image load_hex(const std::string& path, const std::string& text) {
                 throw ImageError(where + "beyond the 256 KiB of flash; build for the ATmega2560");
             }
             image.flash.push_back({address, {bytes.begin() + 4, bytes.end() - 1}});
+        } else if (bytes[3] != 0 && bytes[3] != 3 && bytes[3] != 5) { // those two: where a PC would begin
+            throw ImageError(where + "a record of a kind or length that there is not (" +
+                             std::to_string(bytes[3]) + "); build or copy it again");
         }
     }
     throw ImageError(path + ": truncated: no end record; build or copy it again");

@@ -18,6 +18,24 @@ std::string Image::function_at(uint32_t byte_address) const {
     return best == nullptr ? "" : best->name;
 }
 
+const Symbol* Image::find(const std::string& name) const {
+    for (const Symbol& symbol : symbols) {
+        if (symbol.name == name) {
+            return &symbol;
+        }
+    }
+    return nullptr;
+}
+
+uint32_t Image::data_end() const {
+    for (const char* name : {"__heap_start", "_end"}) {
+        if (const Symbol* end = find(name); end != nullptr && end->address >= kDataStart) {
+            return (end->address - kDataStart) & 0xFFFF;
+        }
+    }
+    return 0;
+}
+
 Image load_image(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {

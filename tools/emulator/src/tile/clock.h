@@ -1,23 +1,72 @@
 // Time: each tile counts its own cycles; the array counts ticks of an exact 16 MHz since it began.
 #pragma once
 
+#include "avr/archive.h"
+
 #include <cmath>
 #include <cstdint>
 
 namespace tilenca {
 
 constexpr double kTicksPerSecond = 16e6;
+// A drifting clock changes its rate in steps, at multiples of this.
+constexpr double kDriftTicks = 1 << 20;
 
-struct Clock {
-    double rate = 1;      // cycles per tick: 1 + error
-    double switch_on = 0; // tick of cycle 0
+class Clock {
+  public:
+    // error: how much faster than nominal; drift: by how much more after each second; tick of cycle 0.
+    explicit Clock(double error = 0, double drift = 0, double switch_on = 0)
+        : error_(error), drift_(drift), anchor_ticks_(switch_on), rate_(1 + error) {}
 
-    double to_ticks(uint64_t cycle) const { return switch_on + static_cast<double>(cycle) / rate; }
+    double to_ticks(uint64_t cycle) const {
+        return anchor_ticks_ + (static_cast<double>(cycle) - anchor_cycles_) / rate_;
+    }
     // The first cycle at or after that time; 0 before the tile is switched on.
     uint64_t to_cycle(double ticks) const {
-        const double cycles = std::ceil((ticks - switch_on) * rate);
+        const double cycles = std::ceil(anchor_cycles_ + (ticks - anchor_ticks_) * rate_);
         return cycles <= 0 ? 0 : static_cast<uint64_t>(cycles);
     }
+    bool drifts() const { return drift_ != 0; }
+    void set_drift(double drift, double now) {
+        drift_ = drift;
+        drift_steps_ = std::floor(now / kDriftTicks);
+    }
+    double error() const { return error_; }
+
+    // The rate as of that time, which must not lie before the last one. How far apart calls are changes
+    // nothing.
+    void follow_drift(double ticks) {
+        if (!drifts()) {
+            return;
+        }
+        for (; (drift_steps_ + 1) * kDriftTicks <= ticks; drift_steps_++) {
+            error_ += drift_ * kDriftTicks / kTicksPerSecond;
+            anchor((drift_steps_ + 1) * kDriftTicks);
+        }
+    }
+    // From that cycle on one cycle takes as long as `divisor` of the crystal's.
+    void divide(uint32_t divisor, uint64_t cycle) {
+        divisor_ = divisor;
+        anchor(to_ticks(cycle));
+    }
+    void state(avr::Archive& archive) {
+        archive(error_, drift_, anchor_ticks_, anchor_cycles_, rate_, divisor_, drift_steps_);
+    }
+
+  private:
+    void anchor(double ticks) {
+        if (ticks > anchor_ticks_) {
+            anchor_cycles_ += (ticks - anchor_ticks_) * rate_;
+            anchor_ticks_ = ticks;
+        }
+        rate_ = (1 + error_) / divisor_;
+    }
+
+    double error_, drift_;
+    double anchor_ticks_, anchor_cycles_ = 0; // a moment in both measures
+    double rate_;                             // cycles per tick from there on
+    uint32_t divisor_ = 1;
+    double drift_steps_ = 0;
 };
 
 } // namespace tilenca

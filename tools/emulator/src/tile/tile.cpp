@@ -2,6 +2,7 @@
 
 #include "board/pins.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tilenca {
@@ -32,28 +33,106 @@ avr::PinId Tile::transmit_pin(unsigned side) {
     return side == kSouth ? on_chip(board::kSouthTx) : kUsartPins[board::kSideUsart[side]][1];
 }
 
-Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const Clock& clock)
-    : clock_(clock), chip_(std::move(program), fuses), host_(clock_, [this](double ticks, bool level) {
-          chip_.push_edge(kUsartPins[board::kHostUsart][0], clock_.to_cycle(ticks), level);
-      }) {
+Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const Clock& clock,
+           const DataEnd& data_end)
+    : clock_(clock), chip_(std::move(program), fuses),
+      host_(clock_,
+            [this](double ticks, bool level) {
+                chip_.push_edge(kUsartPins[board::kHostUsart][0], clock_.to_cycle(ticks), level);
+            }),
+      data_end_(data_end) {
     chip_.gpio().attach_line(kUsartPins[board::kHostUsart][0]);
     chip_.gpio().listen(kUsartPins[board::kHostUsart][1], &host_);
 }
 
 void Tile::run_until(double end) {
+    clock_.follow_drift(end);
     if (const uint64_t cycle = clock_.to_cycle(end); cycle != 0) {
-        chip_.run_until(cycle);
+        if (powered_) {
+            execute_until(end);
+        } else if (cycle > chip_.cpu().cycle) {
+            cycles_off_ += cycle - chip_.cpu().cycle;
+            chip_.pass_while_off(cycle);
+        }
         note_display();
-        host_.follow(chip_.usart(board::kHostUsart).bit_cycles());
+        host_.follow(bit_ticks(board::kHostUsart));
     }
     host_.run_until(end);
+    for (const auto& probe : probes_) {
+        if (probe->follows()) {
+            probe->receiver().follow(bit_ticks(probe->pin()));
+        }
+        probe->settle(end);
+    }
+}
+
+uint16_t Tile::stack_floor() const {
+    if (chip_.has_changed_flash()) {
+        return avr::kSramStart;
+    }
+    if (data_end_.heap_pointer == 0) {
+        return data_end_.fixed;
+    }
+    const uint8_t* const heap = chip_.cpu().data + data_end_.heap_pointer;
+    return std::max(data_end_.fixed, static_cast<uint16_t>(heap[0] | heap[1] << 8));
+}
+
+void Tile::execute_until(double end) {
+    avr::Cpu& cpu = chip_.cpu();
+    if (const uint16_t floor = stack_floor(); floor != cpu.stack_floor) {
+        cpu.set_stack_floor(floor);
+    }
+    chip_.run_until(clock_.to_cycle(end));
+    while (cpu.yields) { // its program has changed the speed of its clock
+        cpu.yields = false;
+        clock_.divide(cpu.clock_divisor, cpu.cycle);
+        chip_.run_until(clock_.to_cycle(end));
+    }
+}
+
+void Tile::set_power(bool on) {
+    if (on == powered_) {
+        return;
+    }
+    powered_ = on;
+    chip_.power_on(); // which leaves all pins floating, too
+    clock_.divide(chip_.cpu().clock_divisor, chip_.cpu().cycle);
+}
+
+// As nominal as a program means it.
+double Tile::bit_ticks(unsigned usart) {
+    return static_cast<double>(chip_.usart(usart).bit_cycles()) * chip_.cpu().clock_divisor;
+}
+
+double Tile::bit_ticks(avr::PinId pin) {
+    for (unsigned i = 0; i < 4; i++) {
+        for (const avr::PinId own : kUsartPins[i]) {
+            if (own.port == pin.port && own.bit == pin.bit) {
+                return bit_ticks(i);
+            }
+        }
+    }
+    return 0;
+}
+
+Probe& Tile::add_probe(avr::PinId pin) {
+    const bool level = chip_.gpio().level(pin, chip_.cpu().cycle);
+    probes_.push_back(std::make_unique<Probe>(clock_, pin, level));
+    chip_.gpio().listen(pin, probes_.back().get());
+    return *probes_.back();
+}
+
+void Tile::remove_probe(Probe& probe) {
+    chip_.gpio().ignore(probe.pin(), &probe);
+    probes_.erase(std::find_if(probes_.begin(), probes_.end(),
+                               [&probe](const auto& one) { return one.get() == &probe; }));
 }
 
 double Tile::wakes_at() {
     if (!host_.all_sent()) {
         return 0;
     }
-    if (!chip_.cpu().fault.empty()) {
+    if (!powered_ || !chip_.cpu().fault.empty() || chip_.cpu().halted) {
         return HUGE_VAL;
     }
     const uint64_t cycle = chip_.wakes_at();
@@ -100,6 +179,15 @@ void Tile::colour(uint8_t duty[3]) {
 
 void Tile::press_button(bool pressed) {
     chip_.gpio().hold_input(on_chip(board::kButton), !pressed, chip_.cpu().cycle);
+}
+
+void Tile::state(avr::Archive& archive) {
+    archive(clock_, powered_, cycles_off_, host_, seen_changes_, shown_, display_changes_, chip_);
+    if (archive.loading()) {
+        for (const auto& probe : probes_) {
+            probe->restart(chip_.gpio().last_level(probe->pin())); // looking would change what was loaded
+        }
+    }
 }
 
 } // namespace tilenca

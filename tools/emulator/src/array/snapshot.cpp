@@ -1,0 +1,110 @@
+// Saving and loading a whole array.
+#include "array/array.h"
+
+#include <cstring>
+
+namespace tilenca {
+
+namespace {
+
+constexpr uint32_t kMagic = 0x53434C54; // "TLCS"
+constexpr uint32_t kVersion = 1;        // one more whenever any state() changes
+constexpr uint32_t kMostTiles = 4096;
+
+// FNV-1a.
+uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u) {
+    for (size_t i = 0; i < count; i++) {
+        hash = (hash ^ bytes[i]) * 16777619u;
+    }
+    return hash;
+}
+
+} // namespace
+
+// A snapshot means nothing to another image.
+uint32_t Array::image_number() const {
+    uint32_t hash = 2166136261u;
+    for (const Block& block : image_.flash) {
+        hash = hash_of(block.bytes.data(), block.bytes.size(), hash);
+    }
+    return hash;
+}
+
+std::vector<uint8_t> Array::save() {
+    avr::Archive archive;
+    uint32_t magic = kMagic, version = kVersion, image = image_number(), tiles = size(),
+             wires = static_cast<uint32_t>(wires_.size());
+    archive(magic, version, image, tiles, wires);
+    for (const auto& wire : wires_) {
+        End from = wire->from(), to = wire->to();
+        archive(from.tile, from.side, to.tile, to.side);
+    }
+    archive(now_, asked_for_);
+    for (const auto& one : tiles_) {
+        archive(*one);
+    }
+    for (const auto& wire : wires_) {
+        archive(*wire);
+    }
+    uint32_t hash = hash_of(archive.saved().data(), archive.saved().size());
+    archive(hash);
+    return archive.saved();
+}
+
+void Array::load(const uint8_t* bytes, size_t count) {
+    uint32_t hash = 0;
+    if (count < sizeof hash) {
+        throw avr::ArchiveError("it ends early");
+    }
+    count -= sizeof hash;
+    std::memcpy(&hash, bytes + count, sizeof hash);
+    if (hash != hash_of(bytes, count)) {
+        throw avr::ArchiveError("it is damaged, or no snapshot at all");
+    }
+    avr::Archive archive(bytes, count);
+    uint32_t magic = 0, version = 0, image = 0, tiles = 0, wires = 0;
+    archive(magic, version);
+    if (magic != kMagic || version != kVersion) {
+        throw avr::ArchiveError("no snapshot that this version of the emulator has made");
+    }
+    archive(image, tiles, wires);
+    if (image != image_number()) {
+        throw avr::ArchiveError("a snapshot of tiles that run another image");
+    }
+    if (tiles > kMostTiles || wires > 2 * kSides * tiles) {
+        throw avr::ArchiveError("it has more tiles or cables than can be");
+    }
+    std::vector<std::pair<End, End>> ends;
+    for (uint32_t i = 0; i < wires; i++) {
+        End from{}, to{};
+        archive(from.tile, from.side, to.tile, to.side);
+        if (from.tile >= tiles || to.tile >= tiles || from.side >= kSides || to.side >= kSides) {
+            throw avr::ArchiveError("a cable leads nowhere");
+        }
+        ends.emplace_back(from, to);
+    }
+    wires_.clear();
+    writing_ = 0;
+    while (size() > tiles) {
+        tiles_.pop_back();
+    }
+    while (size() < tiles) {
+        add_tile(Clock());
+    }
+    for (const auto& [from, to] : ends) {
+        connect(from, to);
+    }
+    rebuild_order();
+    archive(now_, asked_for_);
+    for (const auto& one : tiles_) {
+        archive(*one);
+    }
+    for (const auto& wire : wires_) {
+        archive(*wire);
+    }
+    if (!archive.at_end()) {
+        throw avr::ArchiveError("it does not end where it should");
+    }
+}
+
+} // namespace tilenca

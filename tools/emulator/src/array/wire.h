@@ -1,0 +1,90 @@
+// One direction of a cable: what leaves one tile's pin arrives at another's, late, and not always whole.
+//
+// The sending tile writes, the receiving tile reads what was written a quantum ago: so the two may run at the
+// same time on two processors.
+#pragma once
+
+#include "avr/random.h"
+#include "tile/tile.h"
+
+#include <deque>
+
+namespace tilenca {
+
+constexpr double kLinkLatencyTicks = 320; // 20 us
+
+// What goes wrong on a wire. Bytes are found by their start bits, as 8N1.
+struct WireFault {
+    double loss = 0;  // share of bytes that never arrive (0..1)
+    double flip = 0;  // share of data bits that arrive inverted (0..1)
+    double delay = 0; // ticks more than usual
+    double baud = 0;  // 0: that of the USART at either end
+
+    bool harms() const { return loss > 0 || flip > 0; }
+};
+
+class Wire : public avr::EdgeListener {
+  public:
+    // Ends of a cable by tile and side.
+    struct End {
+        unsigned tile, side;
+    };
+    struct Counts {
+        uint64_t bytes = 0, lost = 0, flipped = 0; // bytes seen and lost, bits flipped; only on a faulty wire
+    };
+
+    Wire(Tile& from, Tile& to, End from_end, End to_end, const unsigned& writing);
+    ~Wire() override;
+    Wire(const Wire&) = delete;
+    Wire& operator=(const Wire&) = delete;
+
+    End from() const { return from_end_; }
+    End to() const { return to_end_; }
+    bool is_connected() const { return connected_; }
+    void set_connected(bool connected, double now);
+    void set_fault(const WireFault& fault, uint64_t seed);
+    const Counts& counts() const { return counts_; }
+
+    void edge(avr::PinId pin, uint64_t cycle, bool level) override;
+    // Of the sender's turn: all before `end` is certain.
+    void settle(double end);
+    // Of the receiver's turn: hands over what was sent before this quantum; false: nothing was.
+    bool deliver() { return !sent_[1 - writing_].empty() && hand_over(); }
+    // When it next has to be looked at, in ticks: at once, if something waits to be delivered.
+    double pending() const;
+    bool has_fault() const { return fault_.harms(); }
+    void state(avr::Archive& archive);
+
+  private:
+    struct Edge {
+        double ticks;
+        bool level;
+        void state(avr::Archive& archive) { archive(ticks, level); }
+    };
+
+    bool hand_over();
+    void start_byte(double ticks);
+    void pass_borders(double until);
+    void send(double ticks);
+    double bit_ticks();
+
+    Tile &from_, &to_;
+    End from_end_, to_end_;
+    avr::PinId from_pin_, to_pin_;
+    const unsigned& writing_; // which of the two lists is being written in this quantum
+    std::vector<Edge> sent_[2];
+    bool connected_ = true;
+
+    WireFault fault_;
+    avr::Random random_;
+    Counts counts_;
+    std::deque<Edge> raw_; // announced, and not certain yet
+    bool raw_level_ = true, out_level_ = true;
+    bool muted_ = false, flipping_ = false;
+    uint8_t flips_ = 0;
+    double start_ = 0, bit_ = 0;
+    unsigned border_ = kNoByte; // the next bit border of the byte under way
+    static constexpr unsigned kNoByte = 0, kLastBorder = 10;
+};
+
+} // namespace tilenca
