@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.live import Live
 
 from tilenca import paths
-from tilenca.arguments import count, number, whole
+from tilenca.arguments import count, number, size, whole
 from tilenca.emulate_debug import attend, debuggers, frames, waveforms
 from tilenca.emulate_faults import parse as parse_fault
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
@@ -28,6 +28,7 @@ from tilenca.picture import Picture, beside
 from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.recording import Recorder, as_record
 from tilenca.shapes import Shape, Task, load_task
+from tilenca.sizes import Size, size_name
 from tilenca.streams import warn
 from tilenca.telemetry import Heard
 
@@ -69,6 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="F",
         help="shape file (shapes/digits.toml)",
     )
+    add("--size", type=size, metavar="RxC", help="stretch the shapes to so many rows and columns, like 9x7")
     add("--elf", type=Path, default=paths.FIRMWARE_ELF, metavar="F", help="firmware image (the last build's)")
     length = parser.add_mutually_exclusive_group()
     length.add_argument(
@@ -145,7 +147,7 @@ def run(args: argparse.Namespace) -> int:
     """Runs the command; 1 when a tile of any shape ends up wrong."""
     _check_combinations(args)
     task = load_task(args.shapes)
-    shapes = _chosen(task, args.shape or [ALL])
+    shapes = _chosen(task, args.shape or [ALL], args.size)
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
@@ -217,8 +219,14 @@ def _bootloader(given: str | None) -> Path | None:
     return Path(given)
 
 
-def _chosen(task: Task, names: Sequence[str]) -> list[Shape]:
+def _chosen(task: Task, names: Sequence[str], wanted: Size | None) -> list[Shape]:
     chosen = list(task.shapes) if ALL in names else [task.find(name) for name in dict.fromkeys(names)]
+    if wanted is not None:
+        chosen = [other for shape in chosen if (other := shape.stretched(wanted)) is not None]
+        if not chosen:
+            raise UsageError(
+                f"--size {size_name(wanted)}: no shape can be drawn that small; try a larger one"
+            )
     for shape in chosen:
         if len(shape.cells) > MAX_TILES:
             raise UsageError(

@@ -83,6 +83,16 @@ def test_several_shapes_come_in_the_order_asked_for(capsys: pytest.CaptureFixtur
     assert document["all_right"] is (status == 0)
 
 
+def test_shapes_are_stretched_to_the_size_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = emulate(capsys, "--shape", "7", "--size", "3x3", "--json", "--updates", "3")
+    assert status in (0, 1), "three updates may be too few"
+    places = [(tile["row"], tile["col"]) for tile in json.loads(out)["tiles"]]
+    assert places == [(0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 2)]
+    status, _, err = emulate(capsys, "--shape", "8", "--size", "3x3")
+    assert status == 2
+    assert "no shape can be drawn that small" in err
+
+
 def test_the_picture_shows_every_digit_and_a_verdict(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = emulate(capsys, "--shape", "1")
     assert status == 0
