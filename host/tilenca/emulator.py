@@ -22,15 +22,8 @@ from types import TracebackType
 
 from tilenca.emulator_library import LIBRARY, check, last_error, library
 from tilenca.emulator_probe import Edge, PinProbe, Waveforms, WireByte, WireFrame, WireTap
-from tilenca.emulator_tile import (
-    DATA_SPACE,
-    EEPROM_BYTES,
-    DisplayChange,
-    EmulatedTile,
-    Mark,
-    ResetCause,
-    Stack,
-)
+from tilenca.emulator_tile import DATA_SPACE, EEPROM_BYTES, EmulatedTile
+from tilenca.emulator_types import DisplayChange, Mark, ResetCause, Stack
 from tilenca.errors import TilencaError, UsageError, image_error
 
 __all__ = [

@@ -8,7 +8,8 @@ import socket
 from contextlib import suppress
 
 from tilenca.emulator import Array
-from tilenca.emulator_tile import DATA_SPACE, SRAM_END, EmulatedTile
+from tilenca.emulator_tile import DATA_SPACE, EmulatedTile
+from tilenca.emulator_types import SRAM_END
 from tilenca.errors import TilencaError, UsageError
 
 FLASH_END, EEPROM_SPACE, EEPROM_END = 0x40000, 0x810000, 0x811000

@@ -1,12 +1,11 @@
 """One emulated tile, as eyes, fingers, cables and a debugger reach it."""
 
 from ctypes import byref, c_char, c_double, c_uint, c_uint8, c_uint32, c_uint64
-from dataclasses import dataclass
-from enum import IntEnum
 from typing import Protocol
 
 from tilenca.emulator_library import check, library
 from tilenca.emulator_probe import PinProbe, WireTap
+from tilenca.emulator_types import DisplayChange, Mark, ResetCause, Stack
 from tilenca.errors import UsageError
 
 EEPROM_BYTES = 4096
@@ -14,7 +13,6 @@ RECEIVE_CHUNK = 4096
 MOST_TILES = 4096
 # Where an ELF file of AVR puts data memory.
 DATA_SPACE = 0x800000
-SRAM_END = 0x2200
 
 
 class Home(Protocol):
@@ -49,61 +47,6 @@ class _Nowhere:
 
     def function_at(self, address: int) -> str:
         raise UsageError(f"0x{address:05X} of a tile that is no more")
-
-
-class ResetCause(IntEnum):
-    """Why a chip is reset from outside; the bit of MCUSR that tells."""
-
-    EXTERNAL = 2
-    BROWN_OUT = 4
-
-
-@dataclass(frozen=True)
-class Stack:
-    """A tile's stack, in addresses of data memory.
-
-    Attributes:
-        pointer: the stack pointer.
-        deepest: the lowest address the stack has used since the tile was switched on.
-        floor: the lowest it may: the data, and the heap, end below.
-    """
-
-    pointer: int
-    deepest: int
-    floor: int
-
-    @property
-    def most_bytes(self) -> int:
-        """How large the stack has been."""
-        return SRAM_END - self.deepest
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A marked instruction began.
-
-    Attributes:
-        function: the function it is in.
-        address: its byte address in flash.
-        cycle: of the tile's own clock, since it was first switched on.
-    """
-
-    function: str
-    address: int
-    cycle: int
-
-
-@dataclass(frozen=True)
-class DisplayChange:
-    """A tile's display began to show something else.
-
-    Attributes:
-        time_s: seconds since the array began, to 16 us.
-        segments: bit mask as in `tilenca.glyphs`.
-    """
-
-    time_s: float
-    segments: int
 
 
 class EmulatedTile:

@@ -53,10 +53,9 @@ double Adc::selected() const {
     return mux == 0x1F || mux >= 0x3E ? 0 : difference(mux);
 }
 
-void Adc::schedule(uint64_t cycle, unsigned adc_half_clocks) {
+unsigned Adc::divisor() const {
     const unsigned select = byte(kAdcsra) & 7;
-    const unsigned divisor = 1u << (select == 0 ? 1 : select);
-    core_.schedule.set(Slot::Adc, cycle + uint64_t{adc_half_clocks} * divisor / 2);
+    return 1u << (select == 0 ? 1 : select);
 }
 
 // The channel counts as it is chosen now: it may be changed for the next conversion while this one runs.
@@ -64,7 +63,13 @@ void Adc::begin(uint64_t cycle) {
     const unsigned mux = (byte(kAdmux) & 31u) | ((byte(kAdcsrb) & kMux5) != 0 ? 32u : 0u);
     is_difference_ = (mux & 0x18) != 0 && mux != 0x1E && mux != 0x1F && mux < 0x3E;
     sampled_ = selected();
-    schedule(cycle, !warm_ ? kFirst : (by_trigger_ ? kTriggered : kSingle));
+    if (by_trigger_) { // an event starts the prescaler anew; a program waits for its next edge
+        origin_ = cycle;
+    }
+    const uint64_t clock = divisor(), late = (cycle - origin_) % clock;
+    const uint64_t start = late == 0 ? cycle : cycle + clock - late;
+    const unsigned halves = !warm_ ? kFirst : (by_trigger_ ? kTriggered : kSingle);
+    core_.schedule.set(Slot::Adc, start + halves * clock / 2);
     warm_ = true;
 }
 
@@ -90,6 +95,9 @@ void Adc::write_control(uint8_t value, uint64_t cycle) {
     const auto flag = static_cast<uint8_t>((value & kAdif) != 0 ? 0 : before & kAdif);
     const bool running = (before & kAdsc) != 0;
     byte(kAdcsra) = static_cast<uint8_t>((value & ~kAdif) | flag | (running ? kAdsc : 0));
+    if ((value & ~before & kAden) != 0) {
+        origin_ = cycle;
+    }
     if ((value & kAden) == 0) {
         byte(kAdcsra) &= static_cast<uint8_t>(~kAdsc);
         core_.schedule.cancel(Slot::Adc);
@@ -171,11 +179,12 @@ void Adc::clock_stops(uint64_t) {
 }
 
 void Adc::clock_starts(uint64_t, uint64_t stood) {
+    origin_ += stood;
     core_.schedule.go_on(Slot::Adc, stood);
 }
 
 void Adc::state(Archive& archive) {
-    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_);
+    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, origin_);
 }
 
 } // namespace tilenca::avr

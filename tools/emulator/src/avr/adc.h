@@ -52,7 +52,7 @@ class Adc : public Peripheral {
     void clock_starts(uint64_t cycle, uint64_t stood) override;
     void write_control(uint8_t value, uint64_t cycle);
     void begin(uint64_t cycle);
-    void schedule(uint64_t cycle, unsigned adc_half_clocks);
+    unsigned divisor() const;
     double selected() const;
     double difference(unsigned mux) const;
     void update_requests();
@@ -65,6 +65,7 @@ class Adc : public Peripheral {
     bool is_difference_ = false;
     bool held_ = false; // ADCL has been read: the result stays until ADCH has
     double sampled_ = 0;
+    uint64_t origin_ = 0; // the prescaler counts from here
     std::function<void(uint64_t)> trigger_changed_ = [](uint64_t) {};
 };
 

@@ -2,17 +2,7 @@
 
 #include "avr/pin_registers.h"
 
-#include <algorithm>
-
 namespace tilenca::avr {
-
-namespace {
-
-constexpr uint8_t bit_of(PinId pin) {
-    return static_cast<uint8_t>(1 << pin.bit);
-}
-
-} // namespace
 
 Gpio::Gpio(const Core& core) : Peripheral(core) {
     for (unsigned i = 0; i < kPorts; i++) {
@@ -133,7 +123,7 @@ void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycl
     Port& port = ports_[pin.port];
     update(port, cycle);
     if (as_output) {
-        port.taken |= bit_of(pin);
+        port.taken |= pin.mask();
         drive_again(pin, source);
     }
     output_changes_++;
@@ -148,12 +138,12 @@ void Gpio::drive_again(PinId pin, PinSource* source) {
 
 void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
     Port& port = ports_[pin.port];
-    const bool was_silent = (port.taken & bit_of(pin)) != 0 && port.sources[pin.bit] == nullptr;
+    const bool was_silent = (port.taken & pin.mask()) != 0 && port.sources[pin.bit] == nullptr;
     PinSource *&first = port.sources[pin.bit], *&second = port.modulators[pin.bit];
     if (second != nullptr && source != nullptr) { // the other one stays
         first = first == source ? second : first;
     } else {
-        port.taken &= static_cast<uint8_t>(~bit_of(pin));
+        port.taken &= static_cast<uint8_t>(~pin.mask());
         first = nullptr;
     }
     second = nullptr;
@@ -161,72 +151,6 @@ void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
     update(port, cycle);
     if (was_silent) {
         announce(pin, cycle, level(pin, cycle));
-    }
-}
-
-Line& Gpio::attach_line(PinId pin) {
-    Port& port = ports_[pin.port];
-    port.lines[pin.bit] = std::make_unique<Line>();
-    port.has_lines |= bit_of(pin);
-    update_watched(core_.cpu.cycle);
-    return *port.lines[pin.bit];
-}
-
-void Gpio::line_changed(PinId pin) {
-    Port& port = ports_[pin.port];
-    if ((port.watched_in & bit_of(pin)) != 0) {
-        schedule_lines(core_.cpu.cycle);
-    }
-}
-
-void Gpio::hold_input(PinId pin, bool level, uint64_t cycle) {
-    Port& port = ports_[pin.port];
-    port.held = static_cast<uint8_t>((port.held & ~bit_of(pin)) | level << pin.bit);
-    update(port, cycle);
-}
-
-void Gpio::listen(PinId pin, EdgeListener* listener) {
-    Port& port = ports_[pin.port];
-    port.listeners[pin.bit].push_back(listener);
-    port.watched_out |= bit_of(pin);
-    update_watched(core_.cpu.cycle);
-}
-
-void Gpio::ignore(PinId pin, EdgeListener* listener) {
-    Port& port = ports_[pin.port];
-    auto& all = port.listeners[pin.bit];
-    all.erase(std::remove(all.begin(), all.end(), listener), all.end());
-    if (all.empty()) {
-        port.watched_out &= static_cast<uint8_t>(~bit_of(pin));
-    }
-    update_watched(core_.cpu.cycle);
-}
-
-void Gpio::watch(PinId pin, PinWatcher* watcher, uint64_t cycle) {
-    Port& port = ports_[pin.port];
-    if (port.watchers[pin.bit] == watcher) {
-        return;
-    }
-    port.watchers[pin.bit] = watcher;
-    port.watched = static_cast<uint8_t>((port.watched & ~bit_of(pin)) | (watcher != nullptr) << pin.bit);
-    update_watched(cycle);
-}
-
-bool Gpio::is_observed(PinId pin) const {
-    const Port& port = ports_[pin.port];
-    return ((port.interrupting | port.watched | port.watched_out) >> pin.bit & 1) != 0;
-}
-
-void Gpio::tell_sources() {
-    for (Port& port : ports_) {
-        for (unsigned bit = 0; port.taken >> bit != 0; bit++) {
-            if (port.sources[bit] != nullptr) {
-                port.sources[bit]->observers_changed();
-            }
-            if (port.modulators[bit] != nullptr) {
-                port.modulators[bit]->observers_changed();
-            }
-        }
     }
 }
 

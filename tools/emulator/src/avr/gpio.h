@@ -18,6 +18,8 @@ constexpr unsigned kPorts = 11; // A B C D E F G H J K L
 struct PinId {
     uint8_t port;
     uint8_t bit;
+
+    constexpr uint8_t mask() const { return static_cast<uint8_t>(1 << bit); }
 };
 
 // Index of a port letter; there is no port I.
