@@ -146,7 +146,7 @@ def _unknown(
 def _some_grown(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
     height, width = max(map(len, drawings)), max(len(rows[0]) for rows in drawings)
     most = max(sum(row.count("#") for row in rows) for rows in drawings)
-    return lambda: variants.grown(random, int(random.integers(3, most + 1)), height + 1, width + 1)
+    return lambda: variants.grown(random, int(random.integers(min(3, most), most + 1)), height + 1, width + 1)
 
 
 def _some_halves(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:

@@ -159,7 +159,7 @@ def _unknown_papers(task: Drawings, first: Sequence[Shape], known: Known, seed: 
     strokes = variants.segments(drawings)
 
     def grown() -> Rows:
-        return variants.grown(random, int(random.integers(4, most + 1)), height + 1, width + 1)
+        return variants.grown(random, int(random.integers(min(4, most), most + 1)), height + 1, width + 1)
 
     def halved() -> Rows:
         return variants.half(random, drawings[int(random.integers(len(drawings)))])

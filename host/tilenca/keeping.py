@@ -56,14 +56,16 @@ def keep(directory: Path, result: Result) -> Path:
 
 
 def _better(directory: Path, result: Result) -> float | None:
-    """The shortfall of the model that lies there, if it is smaller and was measured at the same questions."""
+    """The shortfall of the model of the same drawings that lies there, if it is smaller."""
     try:
-        old = json.loads((directory / "metrics.json").read_text(encoding="utf-8"))
-        asked = [(row["name"], row["steps"], row["target"]) for row in old["rows"]]
-        shortfall = float(old["shortfall"])
+        shortfall = float(json.loads((directory / "metrics.json").read_text(encoding="utf-8"))["shortfall"])
+        old = json.loads((directory / "model.json").read_text(encoding="utf-8"))
+        same = (
+            tuple(old["labels"]) == result.model.labels
+            and old["made"]["sources"] == result.model.made["sources"]
+        )
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    same = asked == [(row["name"], row["steps"], row["target"]) for row in result.metrics["rows"]]
     return shortfall if same and shortfall < result.metrics["shortfall"] else None
 
 
@@ -79,12 +81,13 @@ def _write(directory: Path, result: Result) -> None:
 
 
 def history_table(result: Result) -> tuple[list[str], list[list[float | None]]]:
-    """Columns, and a row for every entry of the history; shares only where they were measured, else None."""
+    """Columns, and a row for every entry of the history and every measurement; None for no value."""
     kinds = list(dict.fromkeys(kind for _, _, shares in result.checks for kind in shares))
+    means = {iteration: means for iteration, *means in result.history}
     checks = {iteration: shares for iteration, _, shares in result.checks}
     rows: list[list[float | None]] = [
-        [iteration, loss, agreement, *(checks.get(iteration, {}).get(kind) for kind in kinds)]
-        for iteration, loss, agreement in result.history
+        [iteration, *means.get(iteration, (None, None)), *(checks.get(iteration, {}).get(kind) for kind in kinds)]
+        for iteration in sorted(means.keys() | checks.keys())
     ]
     return ["iteration", "loss", "agreement", *(f"@{kind}" for kind in kinds)], rows
 
@@ -95,6 +98,6 @@ def history_csv(result: Result) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
-    for iteration, loss, *shares in rows:
-        writer.writerow([iteration, f"{loss:.6f}", *("" if x is None else f"{x:.4f}" for x in shares)])
+    for iteration, *values in rows:
+        writer.writerow([iteration, *("" if x is None else f"{x:.5f}" for x in values)])
     return text.getvalue()

@@ -11,6 +11,7 @@ from tilenca.simulate import Conditions, Course, Engine, Simulator, States
 from tilenca.variants import Cell, rows_of
 
 BETWEEN = 3  # steps from one tile to the next
+PLACES_TRIED = 100
 Changed = tuple[Course, NDArray[np.int64]]
 
 
@@ -44,7 +45,11 @@ def rebuild(
 def rebuild_tile_by_tile(
     engine: Engine, drawings: Drawings, runs: int, before: int, after: int, random: np.random.Generator
 ) -> Changed | None:
-    """The same, one tile after the other: those of the new drawing put down, then the old ones taken away."""
+    """The same, one tile after the other: those of the new drawing put down, then the old ones taken away.
+
+    States are kept; all tiles' clocks are drawn anew at every change, and what they last heard is forgotten, which
+    is harder than what real tiles go through.
+    """
     pairs = list(_pairs(drawings)) * runs
     if not pairs:
         return None
@@ -90,18 +95,28 @@ def _moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]]
 
 def _walk(drawings: Drawings, old: int, new: int, random: np.random.Generator) -> Iterator[tuple[Cell, ...]]:
     """Connected sets of cells from one drawing to another, one tile apart, each sorted."""
-    down, right = drawings.place_on(old, new, random)
     tiles = set(drawings.shapes[old].cells)
-    wanted = {(row + down, col + right) for row, col in drawings.shapes[new].cells}
+    wanted = _laid_on(drawings, old, new, random)
     yield tuple(sorted(tiles))
     while missing := sorted(cell for cell in wanted - tiles if any(near in tiles for near in _around(cell))):
         tiles.add(missing[int(random.integers(len(missing)))])
         yield tuple(sorted(tiles))
-    if not wanted <= tiles:
-        raise ValueError("the drawings do not touch where they are laid on each other")
     while extra := [cell for cell in sorted(tiles - wanted) if connected(tiles - {cell})]:
         tiles.remove(extra[int(random.integers(len(extra)))])
         yield tuple(sorted(tiles))
+
+
+def _laid_on(drawings: Drawings, old: int, new: int, random: np.random.Generator) -> set[Cell]:
+    """The new drawing's cells, laid on the old one as `Drawings.overlap` does, but so that they share one."""
+    tiles = set(drawings.shapes[old].cells)
+    for _ in range(PLACES_TRIED):
+        down, right = drawings.place_on(old, new, random)
+        wanted = {(row + down, col + right) for row, col in drawings.shapes[new].cells}
+        if wanted & tiles:
+            return wanted
+    # A small drawing may lie in a hole of a large one: then the first tiles lie on each other.
+    (row, col), (top, left) = drawings.shapes[old].cells[0], drawings.shapes[new].cells[0]
+    return {(r - top + row, c - left + col) for r, c in drawings.shapes[new].cells}
 
 
 def _around(cell: Cell) -> list[Cell]:

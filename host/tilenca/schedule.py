@@ -43,9 +43,8 @@ class Schedule:
         """The schedules of some samples each, and which cells they are: `wanted` parts of about one size."""
         rounds, cells = self.arrives.shape
         when = np.repeat(np.arange(rounds), self.counts)
-        ends = [
-            self.starts[np.searchsorted(self.starts, cells * part // wanted)] for part in range(1, wanted)
-        ]
+        places = np.append(self.starts, cells)
+        ends = [places[np.searchsorted(places, cells * part // wanted)] for part in range(1, wanted)]
         for first, last in pairwise((0, *ends, cells)):
             mine = (self.who >= first) & (self.who < last)
             reads = self.reads[mine]

@@ -40,7 +40,7 @@ def stretch_rows(rows: Rows, height: int, up: bool = True) -> Rows | None:
         if shorter is None:
             return None
         rows = shorter
-    if len(rows) == height:
+    if len(rows) in (1, height):  # a single row has no joint to stretch
         return rows
     places = [_place(index, len(rows), height, up) for index in range(len(rows))]
     return place_rows(rows, places)
