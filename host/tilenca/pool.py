@@ -17,6 +17,7 @@ from tilenca.recipes import Recipe
 
 States = NDArray[np.float32]
 FORGETS = 0.1  # weight of the newest result in a drawing's share of failures
+QUIET_DRAWN = 0.5  # share of the quiet pool that has the files' own drawings, which must last
 HAD_TIME = 40  # rounds undisturbed after which a wrong tile counts as a failure
 
 
@@ -77,9 +78,13 @@ class Pools:
         self.failures = np.ones(len(drawings))
         groups = np.array(drawings.groups)
         self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
+        self._everything = np.arange(len(drawings))
+        self._drawn = np.flatnonzero(curriculum.whole & (groups < len(drawings.sources)))
         self._weigh(0.0)
-        self.busy = self._fresh(recipe.pool)
-        self.quiet = self._fresh(recipe.quiet_pool)
+        self.busy = self._empty(recipe.pool)
+        self.quiet = self._empty(recipe.quiet_pool)
+        for pool in (self.busy, self.quiet):
+            self._refill(pool)
 
     def take(self, progress: float) -> Taken:
         """Draws a batch, some of it disturbed.
@@ -92,7 +97,8 @@ class Pools:
         busy_count = recipe.batch - recipe.quiet_batch
         resets = switches = 0
         if recipe.pool == 0:
-            self.busy = self._fresh(busy_count)
+            self.busy = self._empty(busy_count)
+            self._refill(self.busy)
             self._busy_taken = np.arange(busy_count)
         else:
             self._busy_taken = random.choice(recipe.pool, busy_count, replace=False)
@@ -141,9 +147,10 @@ class Pools:
         self.quiet.states[self._quiet_taken] = padded[busy_count:]
         self.quiet.age[self._quiet_taken] += rounds[busy_count:]
         # Who was disturbed a moment ago may be wrong; who had time may not.
-        had_time = self.busy.age[self._busy_taken] >= HAD_TIME
-        seen = self.busy.drawing[self._busy_taken][had_time]
-        self.failures[seen] += FORGETS * (~right[:busy_count][had_time] - self.failures[seen])
+        age = np.concatenate((self.busy.age[self._busy_taken], self.quiet.age[self._quiet_taken]))
+        seen = np.concatenate((self.busy.drawing[self._busy_taken], self.quiet.drawing[self._quiet_taken]))
+        had_time = age >= HAD_TIME
+        self.failures[seen[had_time]] += FORGETS * (~right[had_time] - self.failures[seen[had_time]])
 
     def state(self) -> dict[str, Any]:
         """Everything that changes, as plain values and tensors for a checkpoint."""
@@ -160,13 +167,14 @@ class Pools:
                 setattr(pool, field.name, state[name][field.name].cpu().numpy().copy())
         self.failures = state["failures"].cpu().numpy().copy()
 
-    def _fresh(self, count: int) -> Pool:
+    def _empty(self, count: int) -> Pool:
         shape = (count, int(self.drawings.sizes.max()), self.channels)
         zeros = np.zeros(count, np.int64)
-        pool = Pool(zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy())
-        for number in range(count):
+        return Pool(zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy())
+
+    def _refill(self, pool: Pool) -> None:
+        for number in range(len(pool.age)):
             self.reset(pool, number)
-        return pool
 
     def _weigh(self, progress: float) -> None:
         """Half-way between the drawings' weights and those times how often they fail, or as `hard` says."""
@@ -183,7 +191,10 @@ class Pools:
 
     def reset(self, pool: Pool, number: int) -> None:
         """Puts down any drawing anew, every tile in its seed state."""
-        drawing = self._pick(np.arange(len(self.drawings)))
+        among = self._everything
+        if pool is self.quiet and self.random.random() < QUIET_DRAWN:
+            among = self._drawn
+        drawing = self._pick(among)
         pool.drawing[number] = drawing
         pool.states[number] = 0.0
         pool.states[number, : self.drawings.sizes[drawing], 0] = 1.0

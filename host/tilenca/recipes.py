@@ -98,7 +98,7 @@ class Recipe:
 # and a shape that is none of the task's must not be taken for one.
 FULL = Recipe(
     hidden=96,
-    iterations=45_000,
+    iterations=50_000,
     batch=32,
     rounds=(14, 34),
     learning_rate=1e-3,
@@ -111,8 +111,8 @@ FULL = Recipe(
     late=0.5,
     switch=0.25,
     away=0.1,
-    quiet_pool=128,
-    quiet_batch=10,
+    quiet_pool=192,
+    quiet_batch=12,
     quiet_penalty=0.05,
     fire_rate=(0.3, 0.9),
     clocks=0.5,
