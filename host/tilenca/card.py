@@ -48,16 +48,18 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "A step is one update per tile; a run counts when *every* tile shows the right class after the steps "
         "of the second column. Where a row does not say otherwise, tiles live on their own clocks: each has "
         "a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, and all are switched on "
-        "within 10 periods; steps count from the last one. To measure it again:",
+        "within 10 periods; steps count from the last one. Intervals are Wilson's, for these drawings. "
+        "Targets of 1.000 mean that it rounds to that. What was held out of training helped to choose "
+        "when to stop, with other runs and other random drawings than these. To measure it again:",
         "",
-        f"    tilenca evaluate --exam --model DIR --shapes {made['sources'][0]['file']} "
+        f"    tilenca evaluate --exam --model DIR --shapes {' '.join(made['shapes'])} "
         f"--runs {metrics['runs_per_drawing']} --seed {metrics['seed']}",
         "",
         f"{metrics['targets_held']} targets held.",
         "",
-        "| what | after steps | runs | all tiles right | 95 % interval | worst "
-        "drawing | settled: median, 95 % | target |",
-        "|---|---|---|---|---|---|---|---|",
+        "| what | after steps | drawings | runs | all tiles right | 95 % interval | "
+        "worst drawing | settled: median, 95 % | target |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     lines += [_row(row) for row in metrics["rows"]]
     if metrics["weights_cut"]:
@@ -72,11 +74,12 @@ def _row(row: dict[str, Any]) -> str:
     cells = (
         row["name"],
         f"{row['steps']}",
+        f"{row['drawings']}",
         f"{row['runs']}",
         f"{row['share']:.4f}",
         f"{row['low']:.4f} to {row['high']:.4f}",
         f"`{row['worst']['shape']}` {row['worst']['share']:.3f}",
-        f"{_time(row['settle']['median'])}, {_time(row['settle']['p95'])}",
+        f"{_time(row['settle']['median'])}, {_time(row['settle']['p95'])}" if row["settle"] else "",
         target,
     )
     return f"| {' | '.join(cells)} |"

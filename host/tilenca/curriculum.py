@@ -77,17 +77,17 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
         "elsewhere": 0.2,
         "elsewhere edited": 0.03,
     }
-    kinds: list[tuple[float, list[tuple[int, Shape]]]] = [
-        (recipe.stretched, [(n, s) for n, scale in enumerate(scales) if n >= drawn for s in scale]),
-        (recipe.damaged, list(_damaged(scales[:1], known)) if recipe.damaged else []),
-        *((recipe.unknown * shares[name], found) for name, found in unknown.items()),
+    kinds: list[tuple[float, list[tuple[int, Shape]], bool]] = [
+        (recipe.stretched, [(n, s) for n, scale in enumerate(scales) if n >= drawn for s in scale], True),
+        (recipe.damaged, list(_damaged(scales[:1], known)) if recipe.damaged else [], False),
+        *((recipe.unknown * shares[name], found, False) for name, found in unknown.items()),
     ]
-    kinds = [(share, found) for share, found in kinds if share and found]
-    whole = [(number, shape) for number, scale in enumerate(scales[:drawn]) for shape in scale]
-    kinds.insert(0, (1 - sum(share for share, _ in kinds), whole))
-    entries = [entry for _, found in kinds for entry in found]
-    is_whole = [shape.label != UNKNOWN and not shape.name.endswith(DAMAGED) for _, shape in entries]
-    weights = np.concatenate([np.full(len(found), share / len(found)) for share, found in kinds])
+    kinds = [kind for kind in kinds if kind[0] and kind[1]]
+    own = [(number, shape) for number, scale in enumerate(scales[:drawn]) for shape in scale]
+    kinds.insert(0, (1 - sum(kind[0] for kind in kinds), own, True))
+    entries = [entry for _, found, _ in kinds for entry in found]
+    is_whole = [whole for _, found, whole in kinds for _ in found]
+    weights = np.concatenate([np.full(len(found), share / len(found)) for share, found, _ in kinds])
     drawings = replace(
         task,
         shapes=tuple(shape for _, shape in entries),

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.errors import UsageError
-from tilenca.shapes import SIDES, Shape, load_task
-from tilenca.sizes import Sizes
+from tilenca.shapes import SIDES, Shape, Task, load_task
+from tilenca.sizes import Sizes, size_name
 
 Indices = NDArray[np.int64]
 
@@ -45,7 +45,7 @@ class Drawings:
 
     Attributes:
         shapes: the drawings in the order of the files.
-        groups: for each drawing the number of the file it came from; one file holds drawings of one scale.
+        groups: for each drawing the number of the file it came from, or in training of its scale.
         labels: the classes; class k is `labels[k]`.
         sources: `{"file", "sha256"}` of every file.
     """
@@ -202,8 +202,30 @@ def load_training_task(
     Raises:
         UsageError: as `load_drawings`.
     """
-    sizes = load_task(paths[0], max_classes).sizes
+    drawn = load_task(paths[0], max_classes)
+    sizes = drawn.sizes
+    _refuse_collisions(paths[0], drawn, sizes)
     more = tuple(path for path in sizes.drawn if path.resolve() not in [given.resolve() for given in paths])
     if stretch > 1:
         return load_drawings([*paths, *more], max_classes, labels), replace(sizes, drawn=())
     return load_drawings(paths, max_classes, labels), replace(sizes, drawn=more)
+
+
+def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:
+    """Refuses sizes at which two classes are one drawing, and a size held out that is drawn all the same."""
+    for size in (*sizes.trained, *sizes.more, *sizes.held_out):
+        seen: dict[tuple[str, ...], Shape] = {}
+        for shape in task.shapes:
+            for up in (True, False):
+                other = shape.stretched(size, up)
+                if other is None:
+                    continue
+                twin = seen.setdefault(other.rows, other)
+                if twin.label != other.label:
+                    raise UsageError(
+                        f"{path}: [sizes] '{twin.label}' and '{other.label}' are the same drawing at "
+                        f"{size_name(size)}; leave that size out, or redraw one of them"
+                    )
+    largest = max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
+    if largest in sizes.held_out:
+        raise UsageError(f"{path}: [sizes] holds out {size_name(largest)}, which the shapes are drawn at")

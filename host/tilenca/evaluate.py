@@ -22,6 +22,16 @@ from tilenca.sizes import Size, size_name
 from tilenca.tables import table
 from tilenca.validation import SETTLED, settle_times, validate
 
+# Options that --exam has no use for, and their defaults.
+EXAM_SETS = {
+    "engine": "fast",
+    "schedule": "clock",
+    "steps": SETTLED,
+    "size": None,
+    "loss": 0.0,
+    "lost": "held",
+    "dead": 0.0,
+}
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
 
 
@@ -118,9 +128,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _exam(args: argparse.Namespace, model: Model) -> int:
     """The card's measurements, which the same seed and number of runs repeat."""
-    for option, given in (("--engine", args.engine != "fast"), ("--size", args.size), ("--dead", args.dead)):
-        if given:
-            raise UsageError(f"--exam measures everything on the fast engine; leave {option} out")
+    for option, usual in EXAM_SETS.items():
+        if getattr(args, option) != usual:
+            raise UsageError(f"--exam sets its own conditions; leave --{option} out")
     aims = _aims(model)
     task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
     exam = set_exam(task, sizes, model.labels, aims, args.seed)
@@ -136,10 +146,12 @@ def _exam(args: argparse.Namespace, model: Model) -> int:
 def _aims(model: Model) -> Aims:
     """What the model says it was trained for; nothing beyond its drawings where it does not say."""
     recipe = model.made.get("recipe", {})
-    stretch, damaged = (recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0)))
-    if not all(isinstance(value, int | float) for value in (stretch, damaged)):
+    stretch, damaged, unknown = (
+        recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0))
+    )
+    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown)):
         raise UsageError(f"model {model.model_id:04X}: made.recipe has no numbers in it; check out again")
-    return Aims(float(stretch), damaged > 0)
+    return Aims(float(stretch), damaged > 0, unknown > 0)
 
 
 def _at_size(drawings: Drawings, wanted: Size) -> Drawings:

@@ -1,6 +1,6 @@
 """What a model is asked: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
 
-Nothing here was trained on but the drawings themselves: sizes held out, and unknown drawings held out.
+Where a paper says that training never saw its drawings, that is so: sizes and unknown drawings held out.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,8 +16,9 @@ from tilenca.sizes import Size, Sizes, size_name
 from tilenca.stretch import Rows
 from tilenca.variants import Known
 
-LARGE = 42  # a drawing with a larger bounding box gets 100 steps to agree, not 60
-VERY_LARGE = 196  # and beyond this 200
+LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
+VERY_LARGE = 196  # and beyond this even more
+SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class Paper:
     """One set of drawings to ask about.
 
     Attributes:
+        kind: decides the target, see `tilenca.validation.TARGETS`.
         name: as tables call it.
         drawings: with the model's labels.
         steps: after how many steps all tiles must agree.
@@ -32,6 +34,7 @@ class Paper:
         aimed: whether the model was trained for such drawings, so that there is a target to reach.
     """
 
+    kind: str
     name: str
     drawings: Drawings
     steps: int
@@ -45,7 +48,8 @@ class Exam:
 
     Attributes:
         drawn: the drawings of the files, one paper for each.
-        sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone.
+        sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone
+            and without what stretching to a trained size gives as well (a line has no width).
         damaged: one tile missing where that leaves no doubt about the class; None: no such case.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
@@ -65,15 +69,17 @@ class Aims:
     Attributes:
         stretch: largest factor of the drawn size.
         damaged: whether tiles may be missing.
+        unknown: whether to say so of drawings of no class.
     """
 
     stretch: float = 1.0
     damaged: bool = False
+    unknown: bool = False
 
 
 def aims_of(recipe: Recipe) -> Aims:
     """What a recipe trains for."""
-    return Aims(recipe.stretch, recipe.damaged > 0)
+    return Aims(recipe.stretch, recipe.damaged > 0, recipe.unknown > 0)
 
 
 def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Exam:
@@ -89,7 +95,12 @@ def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, 
     task = replace(task, labels=labels)
     first = [shape for shape, group in zip(task.shapes, task.groups, strict=True) if group == 0]
     drawn = tuple(
-        Paper(source["file"], task.chosen(n for n, group in enumerate(task.groups) if group == number), 60)
+        Paper(
+            "drawn",
+            source["file"],
+            task.chosen(n for n, group in enumerate(task.groups) if group == number),
+            60,
+        )
         for number, source in enumerate(task.sources)
     )
     known = Known((shape.label, shape.rows) for shape in task.shapes)
@@ -101,8 +112,8 @@ def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, 
     return Exam(
         drawn,
         tuple(_size_papers(task, first, sizes, sizes.within(task.largest, aims.stretch))),
-        Paper("one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
-        tuple(_unknown_papers(task, first, known, seed)) if UNKNOWN in labels else (),
+        Paper("damaged", "one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
+        tuple(_unknown_papers(task, first, known, aims, seed)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
     )
 
@@ -113,26 +124,35 @@ def _at_size(first: Sequence[Shape], size: Size) -> list[Shape]:
 
 def _steps(size: Size) -> int:
     area = size[0] * size[1]
-    return 60 if area <= LARGE else 100 if area <= VERY_LARGE else 200
+    return SHORT_STEPS if area <= LARGE else LARGE_STEPS if area <= VERY_LARGE else VERY_LARGE_STEPS
 
 
 def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Paper]:
     trained = _distinct(shape for size in aimed.trained for shape in _at_size(first, size))
     trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
     if trained:
-        yield Paper("all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
+        yield Paper("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     for path in sizes.drawn:
         drawings = load_drawings([path], labels=task.labels)
-        yield Paper(f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+        yield Paper("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+    seen = {shape.rows for shape in task.shapes} | {
+        other.rows
+        for shape in first
+        for size in (*aimed.trained, *aimed.more)
+        for up in (True, False)
+        if (other := shape.stretched(size, up)) is not None
+    }
     for size in new:
-        if shapes := _distinct(_at_size(first, size)):
+        if shapes := [shape for shape in _distinct(_at_size(first, size)) if shape.rows not in seen]:
             # Half as large again as what was trained on is asked of a model, not more.
+            steps = _steps(size)
             yield Paper(
+                "held out" if steps <= LARGE_STEPS else "very large",
                 f"{size_name(size)}, never trained on",
                 task.of(shapes),
-                _steps(size),
+                steps,
                 held_out=True,
                 aimed=size[0] <= 1.5 * most[0] and size[1] <= 1.5 * most[1],
             )
@@ -148,10 +168,13 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Pa
     """A larger size, and the largest."""
     wanted = _larger_sizes(task, sizes)
     for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
-        yield Paper(size_name(size), task.of(_at_size(first, size)), _steps(size))
+        kind = "drawn" if _steps(size) <= SHORT_STEPS else "trained"
+        yield Paper(kind, size_name(size), task.of(_at_size(first, size)), _steps(size))
 
 
-def _unknown_papers(task: Drawings, first: Sequence[Shape], known: Known, seed: int) -> Iterable[Paper]:
+def _unknown_papers(
+    task: Drawings, first: Sequence[Shape], known: Known, aims: Aims, seed: int
+) -> Iterable[Paper]:
     random = np.random.default_rng(seed)
     drawings = [shape.rows for shape in first]
     height, width = task.largest
@@ -167,14 +190,15 @@ def _unknown_papers(task: Drawings, first: Sequence[Shape], known: Known, seed: 
     def fits(rows: Rows) -> bool:
         return variants.held_out(rows) and not known.is_known(rows)
 
-    for name, draw in (
-        ("random drawings", grown),
-        ("halves of drawings", halved),
-        ("other choices of the same strokes", lambda: variants.some_segments(random, strokes)),
+    for name, wanted, draw in (
+        ("random drawings", 500, grown),
+        ("halves of drawings", 100, halved),
+        ("other choices of the same strokes", 100, lambda: variants.some_segments(random, strokes)),
     ):
-        if found := variants.draw_until(100, draw, fits):
+        if found := variants.draw_until(wanted, draw, fits):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
-            yield Paper(f"no class: {name}, never trained on", task.of(shapes), 60, held_out=True)
+            label = f"no class: {name}, never trained on"
+            yield Paper(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
 
 
 def _distinct(shapes: Iterable[Shape]) -> list[Shape]:

@@ -86,7 +86,11 @@ def history_table(result: Result) -> tuple[list[str], list[list[float | None]]]:
     means = {iteration: means for iteration, *means in result.history}
     checks = {iteration: shares for iteration, _, shares in result.checks}
     rows: list[list[float | None]] = [
-        [iteration, *means.get(iteration, (None, None)), *(checks.get(iteration, {}).get(kind) for kind in kinds)]
+        [
+            iteration,
+            *means.get(iteration, (None, None)),
+            *(checks.get(iteration, {}).get(kind) for kind in kinds),
+        ]
         for iteration in sorted(means.keys() | checks.keys())
     ]
     return ["iteration", "loss", "agreement", *(f"@{kind}" for kind in kinds)], rows

@@ -202,7 +202,7 @@ class Pools:
         pool.life[number] = self.random.integers(*self.recipe.quiet_rounds)
 
     def switch(self, pool: Pool, number: int) -> None:
-        """Rebuilds a tissue into another drawing of its file; tiles that stay keep their state."""
+        """Rebuilds a tissue into another drawing of its scale; tiles that stay keep their state."""
         old = int(pool.drawing[number])
         others = self._same_scale[self.drawings.groups[old]]
         others = others[others != old]

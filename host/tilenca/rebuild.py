@@ -47,8 +47,8 @@ def rebuild_tile_by_tile(
 ) -> Changed | None:
     """The same, one tile after the other: those of the new drawing put down, then the old ones taken away.
 
-    States are kept; all tiles' clocks are drawn anew at every change, and what they last heard is forgotten, which
-    is harder than what real tiles go through.
+    States are kept; all tiles' clocks are drawn anew at every change, and what they last heard is forgotten,
+    which is harder than what real tiles go through.
     """
     pairs = list(_pairs(drawings)) * runs
     if not pairs:

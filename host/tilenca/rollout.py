@@ -82,6 +82,8 @@ def _side_by_side(do: Callable[[Part], Result], parts: Iterable[Part]) -> list[R
 def use_threads(count: int) -> None:
     """How many processors training may use; the result does not depend on it."""
     global _threads
+    if _threads is not None:
+        _threads.shutdown()
     torch.set_num_threads(1)  # products this small gain nothing from PyTorch's own threads
     _threads = (
         None if count == 1 else ThreadPoolExecutor(count, initializer=torch.set_num_threads, initargs=(1,))

@@ -18,6 +18,7 @@ from tilenca.curriculum import build
 from tilenca.drawings import Drawings
 from tilenca.errors import InterruptedRunError, TilencaError
 from tilenca.exam import Exam, aims_of, set_exam
+from tilenca.interrupts import SIGNALS
 from tilenca.modelfile import Model, checkpoint_path
 from tilenca.quantise import quantise
 from tilenca.rollout import use_threads
@@ -29,7 +30,7 @@ from tilenca.validation import Examiner
 CHECKPOINT_EVERY_S = 45.0
 CHECK_RUNS = 10  # of each drawing in the measurements during training
 HOLDS_TO_END = 3  # of them in a row in which all targets must hold to end early
-ENDING = (signal.SIGINT, signal.SIGTERM)
+ENDING = (signal.SIGINT, *SIGNALS)
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class Progress:
         seed: whose it is.
         iteration: how far it is.
         loss, agreement: means over the last iterations.
-        check: share of targets held and shortfall in the last short measurement; None: none yet.
+        check: targets held, targets and shortfall in the last short measurement; None: none yet.
     """
 
     seed: int
@@ -137,19 +138,27 @@ def _check(trainer: Trainer, exam: Exam) -> tuple[int, int, float]:
     return sum(row.holds for row in asked), len(asked), shortfall
 
 
-def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> None:
+def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[str]:
     """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
 
+    Returns:
+        What went wrong, one line for each run that failed; the others went on to their end.
+
     Raises:
-        InterruptedRunError: Ctrl-C; every run has its checkpoint.
-        TilencaError: a run failed; the others went on to their end.
+        InterruptedRunError: Ctrl-C; every run that had begun has its checkpoint.
     """
+    failures: list[str] = []
     if at_once == 1 or len(jobs) == 1:
         for job in jobs:
-            train(job, tell)
-        return
+            try:
+                train(job, tell)
+            except InterruptedRunError:
+                raise
+            except (TilencaError, OSError) as error:
+                failures.append(f"seed {job.config.seed}: {error}")
+        return failures
     context = multiprocessing.get_context("spawn")
-    waiting, failures = list(jobs), list[str]()
+    waiting = list(jobs)
     running: dict[Connection, SpawnProcess] = {}
     with _interruptible() as interrupted:
         while waiting or running:
@@ -157,7 +166,8 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> None:
                 job = waiting.pop(0)
                 ours, theirs = context.Pipe(duplex=False)
                 process = context.Process(target=_in_process, args=(job, theirs), daemon=True)
-                process.start()
+                with _deaf_to_ctrl_c():  # until it can save its work, it is ended by us
+                    process.start()
                 theirs.close()
                 running[ours] = process
             for connection in wait(list(running), timeout=0.5):
@@ -181,8 +191,17 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> None:
                         os.kill(process.pid, signal.SIGTERM)
         if interrupted():
             raise InterruptedRunError("while training")
-    if failures:
-        raise TilencaError("; ".join(failures))
+    return failures
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """What is started in here ignores Ctrl-C, until it says otherwise."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _in_process(job: Job, connection: "Connection") -> None:
@@ -207,7 +226,9 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         if number == signal.SIGINT:
             signal.signal(number, signal.default_int_handler)
 
-    before = {number: signal.signal(number, note) for number in ENDING}
+    # What whoever started us ignores (nohup) stays ignored; Ctrl-C is ours.
+    heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, note) for number in heeded}
     try:
         yield lambda: bool(caught)
     finally:

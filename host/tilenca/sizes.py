@@ -95,6 +95,11 @@ def read_sizes(path: Path, table: object) -> Sizes:
         ]
     drawn = tuple(path.parent / name for name in _texts(path, table, "drawn"))
     more = tuple(_size(path, "more", text) for text in _texts(path, table, "more"))
+    for size in more:
+        if size in held_out:
+            raise UsageError(
+                f"{path}: [sizes] {size_name(size)} is in more and in held_out; take it out of one"
+            )
     return Sizes(tuple(trained), more, held_out, drawn)
 
 

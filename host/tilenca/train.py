@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from tilenca import fit, paths
 from tilenca.arguments import count, seed, whole
 from tilenca.curriculum import labels_of
 from tilenca.drawings import Drawings, load_training_task
-from tilenca.errors import InterruptedRunError, UsageError
+from tilenca.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.exam import aims_of, set_exam
 from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
 from tilenca.recipes import RECIPES, Recipe, find_recipe
@@ -25,7 +26,9 @@ from tilenca.variants import Known
 
 if TYPE_CHECKING:
     from tilenca.seedrun import Job
+    from tilenca.training import Trainer
 
+EXAM_SEED = 1_000_000  # more than any seed of training that anybody types, so that chance is another
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
@@ -100,12 +103,12 @@ def run(args: argparse.Namespace) -> int:
     """Trains, measures, quantises, writes."""
     started = time.monotonic()
     plan = _plan(args)
-    _check_out(args, plan)
     _check_device(args.device)
     _announce(plan)
+    _check_out(args, plan)
 
     from tilenca.keeping import Result, keep
-    from tilenca.seedrun import Job, make_trainer, model_of, train_side_by_side
+    from tilenca.seedrun import Job, model_of, train_side_by_side
     from tilenca.simulate import FastEngine, processors
     from tilenca.training import Config
     from tilenca.trainview import show_training
@@ -119,17 +122,26 @@ def run(args: argparse.Namespace) -> int:
     jobs = [
         Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
     ]
-    made = {"command": _command(args), "commit": _commit(), "recipe_name": args.recipe}
+    made = {
+        "command": _command(args),
+        "shapes": [_place(path) for path in args.shapes],
+        "commit": _commit(),
+        "recipe_name": args.recipe,
+    }
+    with show_training(plan.seeds, plan.recipe.iterations) as tell:
+        try:
+            failures = train_side_by_side(jobs, at_once, tell)
+        except (InterruptedRunError, KeyboardInterrupt) as error:
+            raise _interrupted(args, str(error) or "while training") from None
+    for failure in failures:
+        warn(failure)
     try:
-        with show_training(plan.seeds, plan.recipe.iterations) as tell:
-            train_side_by_side(jobs, at_once, tell)
-        job = _best(jobs)
-        trainer = make_trainer(replace(job, resume=True))
+        job, trainer = _best(jobs, args.seed)
         model, cut = model_of(trainer, {**made, **job.config.as_json()})
-        exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), args.seed)
-        metrics = validate(FastEngine(model), exam, plan.validation_runs, args.seed, warn)
-    except InterruptedRunError as error:
-        raise _interrupted(args, str(error)) from None
+        # Other runs and other random drawings than those that decided when to stop, and for which seed.
+        exam_seed = EXAM_SEED + args.seed
+        exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), exam_seed)
+        metrics = validate(FastEngine(model), exam, plan.validation_runs, exam_seed, warn)
     except KeyboardInterrupt:
         raise _interrupted(args, "while measuring the trained model") from None
     metrics |= {"weights_cut": cut, "iterations": trainer.iteration, "ended_early": trainer.ended}
@@ -203,35 +215,44 @@ def _check_device(device: str) -> None:
         raise UsageError("--device cuda: PyTorch finds no CUDA device here; use --device cpu")
 
 
-def _best(jobs: "list[Job]") -> "Job":
+def _best(jobs: "list[Job]", exam_seed: int) -> "tuple[Job, Trainer]":
     """The trained job whose model falls short of its targets least."""
     from tilenca.seedrun import make_trainer, model_of
     from tilenca.simulate import FastEngine
     from tilenca.validation import Examiner
 
-    if len(jobs) == 1:
-        return jobs[0]
-    shortfalls = []
+    finished = []
     for job in jobs:
-        model, _ = model_of(make_trainer(replace(job, resume=True)), {})
-        exam = set_exam(job.task, job.sizes, model.labels, aims_of(job.config.recipe), job.config.seed)
-        rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, jobs[0].config.seed).short_rows()
+        if job.checkpoint.exists() and (trainer := make_trainer(replace(job, resume=True))).done:
+            finished.append((job, trainer))
+    if not finished:
+        raise TilencaError("no seed was trained to its end; see above, or try another --seed")
+    if len(finished) == 1:
+        return finished[0]
+    shortfalls = []
+    for job, trainer in finished:
+        model, _ = model_of(trainer, {})
+        exam = set_exam(job.task, job.sizes, model.labels, aims_of(job.config.recipe), exam_seed)
+        rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, exam_seed).short_rows()
         shortfalls.append(sum(row.shortfall for row in rows))
         warn(f"seed {job.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
-    return jobs[shortfalls.index(min(shortfalls))]
+    return finished[shortfalls.index(min(shortfalls))]
 
 
 def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
-    return InterruptedRunError(f"interrupted {where}; continue with: {_command(args)} --resume")
+    if not checkpoints(args.out):
+        return InterruptedRunError(f"interrupted {where}, before there was anything to keep")
+    return InterruptedRunError(f"interrupted {where}; continue with: {_command(args, str)} --resume")
 
 
-def _command(args: argparse.Namespace) -> str:
-    """The command that makes this model; paths inside the project as seen from its root."""
+def _place(path: Path) -> str:
+    """A path as seen from the project's root, if it is inside."""
+    full = path.resolve()
+    return str(full.relative_to(paths.ROOT) if full.is_relative_to(paths.ROOT) else path)
 
-    def place(path: Path) -> str:
-        full = path.resolve()
-        return str(full.relative_to(paths.ROOT) if full.is_relative_to(paths.ROOT) else path)
 
+def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) -> str:
+    """The command that makes this model."""
     recipe = find_recipe(args.recipe)
     words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
@@ -261,4 +282,8 @@ def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seco
     missed = [row for row in metrics["rows"] if not row["holds"]]
     print(f"model in {where}, {seconds:.0f} s; {metrics['targets_held']} targets held")
     for row in missed:
-        print(f"  missed: {row['name']}, @{row['steps']}: {row['share']:.4f}, wanted {row['target']}")
+        worst = row["worst"]
+        print(
+            f"  missed: {row['name']}, @{row['steps']}: {row['share']:.4f}, wanted {row['target']}; "
+            f"{worst['shape']}: {worst['share']:.4f}, wanted {row['floor']}"
+        )

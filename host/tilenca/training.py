@@ -4,6 +4,7 @@ Reads top to bottom: `Trainer.step` is one optimiser step. Everything random com
 whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
 """
 
+import io
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -170,7 +171,11 @@ class Trainer:
                 self.average[name].lerp_(value, 1 - keep)
 
     def save(self, path: Path) -> None:
-        """Writes a checkpoint; an interrupted write leaves the one before."""
+        """Writes a checkpoint; an interrupted write leaves the one before.
+
+        Raises:
+            OSError: the disk is full or not writable.
+        """
         state = {
             "config": self.config.as_json(),
             "iteration": self.iteration,
@@ -182,9 +187,14 @@ class Trainer:
             "pools": self.pools.state(),
             "history": (self.history, self._since, self.checks),
         }
+        buffer = io.BytesIO()
+        torch.save(state, buffer)  # into memory: on a full disk torch raises what does not say so
         partial = path.with_suffix(".part")
-        torch.save(state, partial)
-        partial.replace(path)
+        try:
+            partial.write_bytes(buffer.getbuffer())
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
 
     def load(self, path: Path) -> None:
         """Continues where a checkpoint was written.

@@ -5,18 +5,18 @@ Everything runs on the firmware's own core. A run counts as right when *every* t
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.drawings import Drawings
 from tilenca.exam import Exam, Paper
 from tilenca.rebuild import rebuild, rebuild_tile_by_tile
 from tilenca.simulate import Conditions, Course, Engine, Fault, Schedule, Simulator
 
 MARKS = (10, 30, 60)  # steps after which agreement is reported
+SETTLING = (8, 14)  # steps within which half, and nearly all, of the runs are to settle
 SETTLED = MARKS[-1]  # from here on a wrong tile counts as a lapse
 LONG = 1000
 SCHEDULES: dict[Schedule, str] = {"random": "the paper's sampler", "clock": "the tiles' own clocks"}
@@ -36,7 +36,9 @@ class Target:
 PERFECT = 0.9995  # 1.000 as it is printed
 TARGETS = {
     "drawn": Target(PERFECT, 0.998),
-    "trained": Target(0.998),
+    "settled in 8": Target(0.5),
+    "settled in 14": Target(0.95),
+    "trained": Target(0.998, 0.9),
     "held out": Target(0.99),
     "very large": Target(0.95),
     "lost": Target(0.99),
@@ -61,11 +63,13 @@ class Row:
         key: what kind of question it is.
         name: what was asked.
         steps: after how many steps (updates per tile) since the start or the last change.
-        runs: how many runs.
+        drawings: how many drawings.
+        runs: how many runs of all of them.
         share: of the runs in which every tile was right.
-        low, high: 95 % confidence interval of it (Wilson's).
+        low, high: 95 % confidence interval of it (Wilson's), for these drawings.
         worst: the drawing that did worst, and its share.
-        settle: steps until all tiles were right and stayed so: median, 95 % (None: never).
+        settle: steps until all tiles were right and stayed so: median, 95 % (None: never); None where that
+            makes no sense.
         target: least share; None: only measured.
         floor: least share of every drawing.
     """
@@ -73,12 +77,13 @@ class Row:
     key: str
     name: str
     steps: int
+    drawings: int
     runs: int
     share: float
     low: float
     high: float
     worst: tuple[str, float]
-    settle: dict[str, float | None]
+    settle: dict[str, float | None] | None
     target: float | None = None
     floor: float = 0.0
 
@@ -93,6 +98,18 @@ class Row:
         if self.target is None:
             return 0.0
         return max(0.0, self.target - self.share, self.floor - self.worst[1])
+
+    def text(self) -> str:
+        """One line for people."""
+        line = f"{self.name}, @{self.steps}: {self.share:.4f}"
+        if self.holds:
+            return line
+        worst = (
+            f", {self.worst[0]}: {self.worst[1]:.4f}, wanted {self.floor}"
+            if self.worst[1] < self.floor
+            else ""
+        )
+        return f"{line} (wanted {self.target}{worst})"
 
     def as_json(self) -> dict[str, Any]:
         """Plain values for metrics.json."""
@@ -155,24 +172,30 @@ class Examiner:
         yield from self.longevity()
 
     def agreement(self, schedules: Mapping[Schedule, str] = SCHEDULES) -> Iterator[Row]:
-        """The files' drawings on both schedules."""
+        """The files' drawings on both schedules, and how soon the first file's settle; larger ones."""
         for paper in self.exam.drawn:
             for schedule, name in schedules.items():
                 course, chosen = self._run(paper, Conditions(schedule), SETTLED)
                 for mark in MARKS:
-                    target = TARGETS["drawn"] if mark > MARKS[0] else None
-                    yield self._row(
-                        "drawings", f"{paper.name}, {name}", paper.drawings, chosen, course, mark, target
-                    )
+                    target = TARGETS[paper.kind] if mark > MARKS[0] else None
+                    yield self._row("drawings", f"{paper.name}, {name}", paper, chosen, course, mark, target)
+                if paper is self.exam.drawn[0] and schedule == "clock":
+                    for steps in SETTLING:
+                        soon = Course((course.settled <= steps).astype(np.float32)[None])
+                        target = TARGETS[f"settled in {steps}"]
+                        row = self._row("settling", f"{paper.name}, settled", paper, chosen, soon, 1, target)
+                        yield replace(row, steps=steps, settle=None)
+        for paper in self.exam.larger:
+            course, chosen = self._run(paper, CLOCK, paper.steps)
+            yield self._row("sizes", paper.name, paper, chosen, course, paper.steps, TARGETS[paper.kind])
 
     def sizes(self) -> Iterator[Row]:
         """Other sizes."""
         for paper in self.exam.sizes:
             runs = self.runs if paper.held_out else max(2, self.runs // 25)
             course, chosen = self._run(paper, CLOCK, paper.steps, runs)
-            kind = "trained" if not paper.held_out else "held out" if paper.steps <= 100 else "very large"
-            target = TARGETS[kind] if paper.aimed else None
-            yield self._row("sizes", paper.name, paper.drawings, chosen, course, paper.steps, target)
+            target = TARGETS[paper.kind] if paper.aimed else None
+            yield self._row("sizes", paper.name, paper, chosen, course, paper.steps, target)
 
     def disturbed(self) -> Iterator[Row]:
         """Lost messages, and tiles that are missing, dead, stuck, or away for a while."""
@@ -182,27 +205,33 @@ class Examiner:
             ("50 % of the messages lost, last one held", Conditions("clock", loss=0.5, lost="held")),
         ):
             course, chosen = self._run(drawn, conditions, SETTLED)
-            yield self._row("lost", name, drawn.drawings, chosen, course, SETTLED, lost)
+            yield self._row("lost", name, drawn, chosen, course, SETTLED, lost)
         if (damaged := self.exam.damaged) is not None:
             name = "one tile missing, where that leaves no doubt about the class"
             course, chosen = self._run(damaged, CLOCK, SETTLED, max(2, self.runs // 5))
             target = TARGETS["damaged"] if damaged.aimed else None
-            yield self._row("damaged", name, damaged.drawings, chosen, course, SETTLED, target)
-        faults: tuple[tuple[str, tuple[FaultKind, int, int | None], Target | None], ...] = (
-            ("any one tile dead, the others asked", ("dead", 0, None), None),
-            ("any one tile stuck after 5 steps, the others asked", ("stuck", 5, None), None),
-            ("any one tile off from step 30 to 60, back again", ("away", 30, SETTLED), TARGETS["away"]),
+            yield self._row("damaged", name, damaged, chosen, course, SETTLED, target)
+        large = [n for n, size in enumerate(drawn.drawings.sizes) if size > 1]
+        if not large:
+            return  # of a single tile nobody is left to ask
+        several = replace(drawn, drawings=drawn.drawings.chosen(large))
+        faults: tuple[tuple[str, FaultKind, int, int | None, Target | None], ...] = (
+            ("any one tile dead, the others asked", "dead", 0, None, None),
+            ("any one tile stuck after 5 steps, the others asked", "stuck", 5, None, None),
+            ("any one tile off from step 30 to 60, back again", "away", 30, SETTLED, TARGETS["away"]),
         )
-        for name, fault, target in faults:
-            course, chosen = self._run(drawn, CLOCK, 2 * SETTLED, fault=fault)
-            yield self._row("faults", name, drawn.drawings, chosen, course, 2 * SETTLED, target, SETTLED)
+        for name, kind, begin, end, target in faults:
+            since = end or begin
+            course, chosen = self._run(several, CLOCK, since + SETTLED, fault=(kind, begin, end))
+            yield self._row("faults", name, several, chosen, course, since + SETTLED, target, since)
 
     def unknown(self) -> Iterator[Row]:
         """Drawings of no class: right is what shows the dash on every tile."""
         for paper in self.exam.unknown:
-            course, chosen = self._run(paper, CLOCK, paper.steps, max(2, self.runs // 10))
-            target = next(target for name, target in TARGETS.items() if name in paper.name.split(", ")[0])
-            yield self._row("unknown", paper.name, paper.drawings, chosen, course, paper.steps, target)
+            each = max(2, 10 * self.runs // len(paper.drawings))
+            course, chosen = self._run(paper, CLOCK, paper.steps, each)
+            target = TARGETS[paper.kind] if paper.aimed else None
+            yield self._row("unknown", paper.name, paper, chosen, course, paper.steps, target)
 
     def changes(self, one_by_one: bool = True) -> Iterator[Row]:
         """Every change from one class to another on running tiles that nobody resets."""
@@ -217,21 +246,22 @@ class Examiner:
             if changed is not None:
                 course, chosen = changed
                 name = f"{paper.name}, changes to every other class {how}"
-                yield self._row("changes", name, paper.drawings, chosen, course, paper.steps, TARGETS[target])
+                yield self._row("changes", name, paper, chosen, course, paper.steps, TARGETS[target])
 
     def longevity(self) -> Iterator[Row]:
         """Long runs: who is right after 1000 steps, and who is never wrong again after having settled."""
         drawn = self.exam.drawn[0]
         course, chosen = self._run(drawn, CLOCK, LONG, max(1, self.runs // 5))
         name = f"{drawn.name}, {SCHEDULES['clock']}"
-        yield self._row("longevity", name, drawn.drawings, chosen, course, LONG, TARGETS["long"])
+        yield self._row("longevity", name, drawn, chosen, course, LONG, TARGETS["long"])
         steps = 20 * self.runs
         for paper in (self.exam.drawn[0], *self.exam.larger[-1:]):
             each = max(1, -(-self.runs // (5 * len(paper.drawings))))
             course, chosen = self._run(paper, CLOCK, paper.steps + steps, each)
             kept = Course(course.right[paper.steps - 1 :].min(axis=0, keepdims=True))
             name = f"{paper.name}, no lapse in {steps} steps more"
-            yield self._row("longevity", name, paper.drawings, chosen, kept, 1, TARGETS["longevity"])
+            row = self._row("longevity", name, paper, chosen, kept, 1, TARGETS["longevity"])
+            yield replace(row, steps=paper.steps + steps, settle=None)
 
     def _run(
         self,
@@ -253,7 +283,7 @@ class Examiner:
         self,
         key: str,
         name: str,
-        drawings: Drawings,
+        paper: Paper,
         chosen: NDArray[np.int64],
         course: Course,
         mark: int,
@@ -268,11 +298,12 @@ class Examiner:
             key,
             name,
             mark - since,
+            len(shares),
             len(agreed),
             round(float(agreed.mean()), 5),
             round(low, 5),
             round(high, 5),
-            (drawings.shapes[worst].name, round(shares[worst], 5)),
+            (paper.drawings.shapes[worst].name, round(shares[worst], 5)),
             settle_times(np.maximum(course.settled - since, 0)),
             None if target is None else target.share,
             0.0 if target is None else target.floor,
@@ -294,7 +325,7 @@ def validate(engine: Engine, exam: Exam, runs: int, seed: int, say: Say = lambda
     """
     rows = []
     for row in Examiner(engine, exam, runs, seed).rows():
-        say(f"{row.name}, @{row.steps}: {row.share:.4f}" + ("" if row.holds else f" (target {row.target})"))
+        say(row.text())
         rows.append(row)
     return {
         "runs_per_drawing": runs,

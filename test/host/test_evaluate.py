@@ -288,7 +288,10 @@ def test_the_exam_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFix
         assert f"{row['name']}, @{row['steps']}: {row['share']:.4f}" in table
 
 
-@pytest.mark.parametrize("words", [["--size", "9x7"], ["--engine", "float"], ["--dead", "0.1"]])
+@pytest.mark.parametrize(
+    "words",
+    [["--size", "9x7"], ["--engine", "float"], ["--dead", "0.1"], ["--loss", "0.1"], ["--steps", "9"]],
+)
 def test_the_exam_sets_its_own_conditions(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["evaluate", "--exam", *words]) == 2
     assert f"leave {words[0]} out" in capsys.readouterr().err

@@ -205,7 +205,7 @@ def test_any_number_of_threads_and_parts_lives_the_same_life(drawings: Drawings)
     lives = np.full(9, 10)
     schedule = draw_schedule(RECIPES["full"], batch, lives, random, random.random(9) < 0.3, nobody(batch))
     whole = schedule.by_cell()
-    for wanted in (1, 2, 5):
+    for wanted in (1, 2, 5, 40):
         parts = list(schedule.parts(wanted))
         assert len(parts) == wanted
         for part, (cells, some) in enumerate(parts):

@@ -46,6 +46,7 @@ def test_the_digits_are_trained_up_to_12x10_and_the_sizes_held_out_are_not() -> 
         ('[sizes]\nfrom = "5x5"\nto = "7x4"', "from 5x5 is larger than to 7x4"),
         ('[sizes]\nheld_out = "3x3"', "held_out must be a list of texts"),
         ("[sizes]\nheld_out = [3]", "held_out must be a list of texts"),
+        ('[sizes]\nmore = ["7x7"]\nheld_out = ["7x7"]', "7x7 is in more and in held_out"),
         ('[sizes]\nheld_out = ["101x3"]', "held_out: '101x3' is not a size"),
     ],
 )
@@ -72,6 +73,11 @@ def test_the_curriculum_has_every_kind_in_its_share_and_nothing_held_out() -> No
     assert weights[damaged].sum() == pytest.approx(FULL.damaged)
     assert {shape.label for shape in shapes} == {*"0123456789", UNKNOWN}
     assert not any(variants.held_out(shape.rows) for shape, none in zip(shapes, unknown, strict=True) if none)
+    asked = set_exam(task, sizes, task.labels, aims_of(FULL), seed=1)
+    new = {
+        s.rows for paper in (*asked.sizes, *asked.unknown) if paper.held_out for s in paper.drawings.shapes
+    }
+    assert new.isdisjoint(shape.rows for shape in shapes)
     drawn = {(len(shape.rows), len(shape.rows[0])) for shape in shapes if shape.label == "8"}
     assert (7, 6) in drawn
     assert not drawn & set(sizes.held_out)
@@ -99,7 +105,7 @@ def test_a_state_without_room_for_a_dash_gets_none() -> None:
 def test_the_exam_asks_for_what_training_never_saw() -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
     labels = (*task.labels, UNKNOWN)
-    exam = set_exam(task, sizes, labels, Aims(10.0, True), seed=1)
+    exam = set_exam(task, sizes, labels, Aims(10.0, True, True), seed=1)
     assert [paper.name for paper in exam.drawn] == ["digits.toml", "digits-3x3.toml"]
     held_out = [paper for paper in exam.sizes if paper.held_out]
     assert [paper.name.split(",")[0] for paper in held_out] == [

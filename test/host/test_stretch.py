@@ -61,3 +61,7 @@ def test_what_lies_half_way_goes_up_or_down_as_asked() -> None:
     assert high is not None
     assert [row == "####" for row in low] == [True, False, False, True, False, True]
     assert [row == "####" for row in high] == [True, False, True, False, False, True]
+
+
+def test_a_single_tile_has_no_size() -> None:
+    assert stretch(drawn("#"), 5, 4) == ("#",)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -182,10 +183,12 @@ def test_seeds_side_by_side_are_those_trained_alone_and_the_better_one_is_kept(
 
 def test_a_failure_in_one_of_the_processes_is_told(shapes: Path, tmp_path: Path) -> None:
     jobs = [replace(job_of([shapes], tmp_path, seed), resume=True) for seed in (1, 2)]
-    jobs[1].checkpoint.write_bytes(b"damaged")
-    with pytest.raises(TilencaError, match=r"seed 2: .*checkpoint-2\.pt: damaged checkpoint"):
-        train_side_by_side(jobs, 2, lambda _: None)
-    assert make_trainer(jobs[0]).done, "the other seed went on to its end"
+    for at_once in (1, 2):
+        jobs[0].checkpoint.unlink(missing_ok=True)
+        jobs[1].checkpoint.write_bytes(b"damaged")
+        (failure,) = train_side_by_side(jobs[::-1], at_once, lambda _: None)
+        assert re.search(r"seed 2: .*checkpoint-2\.pt: damaged checkpoint", failure)
+        assert make_trainer(jobs[0]).done, "the other seed went on to its end"
 
 
 def test_training_ends_early_once_all_targets_held_several_times(
@@ -322,3 +325,68 @@ def test_values_that_make_no_sense_are_refused(
     assert words[0] in error
     assert len(error.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+
+
+def drawing(label: str, *rows: str) -> str:
+    return f'[[shape]]\nlabel = "{label}"\ngrid = """\n' + "\n".join(rows) + '\n"""\n'
+
+
+ODD_FILES = {
+    "one class": drawing("1", "#", "#", "#"),
+    "one tile and a ring": drawing("o", "#") + drawing("0", "#####", "#...#", "#...#", "#...#", "#####"),
+    "only single tiles": drawing("1", "#"),
+    "a drawing far from the other": drawing("L", "#....", "#....", "#....", "#....", "#####")
+    + drawing("1", "##"),
+    "a dash of its own": drawing("1", "#", "#", "#")
+    + drawing("-", "##", "##")
+    + drawing("7", "##", ".#", ".#"),
+    "sizes": '[sizes]\nfrom = "3x2"\nto = "4x3"\nheld_out = ["4x2"]\n'
+    + drawing("7", "##", ".#", ".#")
+    + drawing("L", "#.", "#.", "##"),
+}
+
+
+@pytest.mark.parametrize("content", ODD_FILES.values(), ids=list(ODD_FILES))
+def test_odd_shape_files_are_trained_and_examined(
+    content: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "odd.toml"
+    file.write_text(content)
+    assert train(file, tmp_path / "out", "--iterations", "20") == 0
+    words = ["evaluate", "--exam", "--model", str(tmp_path / "out"), "--shapes", str(file), "--runs", "2"]
+    trained = json.loads((tmp_path / "out" / "metrics.json").read_text())
+    capsys.readouterr()
+    assert cli.main([*words, "--seed", str(trained["seed"]), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["metrics"]["rows"] == trained["rows"]
+
+
+def test_as_many_classes_as_a_wide_state_has_room_for(tmp_path: Path) -> None:
+    labels = "0123456789AbCcdEFGHhIJKLMnoPqrtUuVWXY_="
+    rows = [format(number + 64, "b").replace("0", ".").replace("1", "#") for number in range(64)]
+    file = tmp_path / "many.toml"
+    file.write_text(
+        "".join(drawing(label, row, "#" * len(row)) for label, row in zip(labels, rows, strict=False))
+    )
+    assert train(file, tmp_path / "out", "--iterations", "4", "--state", "51") == 0
+    assert len(load_model(tmp_path / "out").labels) == len(labels) + 1
+
+
+def test_sizes_at_which_two_classes_are_one_drawing_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "alike.toml"
+    sizes = '[sizes]\nfrom = "3x3"\nto = "6x6"\n'
+    file.write_text(
+        sizes + drawing("1", "###", "#..", "#..") + drawing("7", "###", "#..", "#..", "#..", "#..")
+    )
+    assert train(file, tmp_path / "out") == 2
+    assert "'1' and '7' are the same drawing at" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_full_disk_is_one_line_and_leaves_no_half_checkpoint(tmp_path: Path) -> None:
+    learner = trainer()
+    with pytest.raises(OSError, match="No such file"):
+        learner.save(tmp_path / "nowhere" / "checkpoint-1.pt")
+    learner.save(tmp_path / "checkpoint-1.pt")
+    assert [path.name for path in tmp_path.iterdir()] == ["checkpoint-1.pt"]

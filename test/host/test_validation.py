@@ -34,7 +34,17 @@ def row(share: float, target: Target | None = None, worst: float | None = None) 
     settle = {"median": 7.0, "p95": None}
     aim = (None, 0.0) if target is None else (target.share, target.floor)
     return Row(
-        "drawings", "some", 60, 100, share, 0.0, 1.0, ("4", share if worst is None else worst), settle, *aim
+        "drawings",
+        "some",
+        60,
+        1,
+        100,
+        share,
+        0.0,
+        1.0,
+        ("4", share if worst is None else worst),
+        settle,
+        *aim,
     )
 
 
@@ -94,13 +104,14 @@ def test_on_the_way_from_one_drawing_to_another_tiles_hang_together(digits: Draw
 
 def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    exam = set_exam(replace(task, labels=model.labels), sizes, model.labels, Aims(10, True), 1)
+    exam = set_exam(replace(task, labels=model.labels), sizes, model.labels, Aims(10, True, True), 1)
     said: list[str] = []
     metrics = validate(FastEngine(model), exam, 2, 1, said.append)
     assert metrics == validate(FastEngine(model), exam, 2, 1)
     assert metrics == json.loads(json.dumps(metrics))
     assert len(said) == len(metrics["rows"])
     assert all(0 <= row["low"] <= row["share"] <= row["high"] <= 1 for row in metrics["rows"])
+    model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
     card = render_card(model, {**metrics, "weights_cut": 0, "iterations": 10, "ended_early": True})
     for line in metrics["rows"]:
         assert line["name"] in card
@@ -118,7 +129,13 @@ def a_result(model: Model, shortfall: float) -> Result:
         "shortfall": shortfall,
     }
     metrics |= {"weights_cut": 0, "iterations": 1, "ended_early": False}
-    return Result(model, metrics, [(20, 0.5, 0.25), (40, 0.25, 0.5)], [(40, 0.1, {"drawings": 0.9})])
+    model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
+    return Result(
+        model,
+        metrics,
+        [(20, 0.5, 0.25), (40, 0.25, 0.5)],
+        [(30, 0.2, {"drawings": 0.8}), (40, 0.1, {"drawings": 0.9})],
+    )
 
 
 def test_a_worse_model_does_not_replace_a_better_one(
@@ -135,6 +152,12 @@ def test_a_worse_model_does_not_replace_a_better_one(
     assert json.loads((tmp_path / "metrics.json").read_text())["shortfall"] == 0.05
 
 
+def test_a_model_of_other_drawings_is_replaced_whatever_it_scored(model: Model, tmp_path: Path) -> None:
+    keep(tmp_path, a_result(model, 0.1))
+    others = replace(model, made={**model.made, "sources": [{"file": "other.toml", "sha256": ""}]})
+    assert keep(tmp_path, a_result(others, 0.2)) == tmp_path
+
+
 def test_damaged_metrics_of_an_old_model_are_no_reason_to_keep_it(model: Model, tmp_path: Path) -> None:
     (tmp_path / "metrics.json").write_text('{"rows": [3]}')
     assert keep(tmp_path, a_result(model, 0.2)) == tmp_path
@@ -143,6 +166,7 @@ def test_damaged_metrics_of_an_old_model_are_no_reason_to_keep_it(model: Model, 
 def test_the_history_has_a_column_for_every_kind_of_measurement(model: Model) -> None:
     assert history_csv(a_result(model, 0.1)).splitlines() == [
         "iteration,loss,agreement,@drawings",
-        "20,0.500000,0.2500,",
-        "40,0.250000,0.5000,0.9000",
+        "20,0.50000,0.25000,",
+        "30,,,0.80000",
+        "40,0.25000,0.50000,0.90000",
     ]

@@ -17,7 +17,7 @@ LEVELS = {
     "check": "the same, and check format, lint, types and budgets",
 }
 # Debian packages beyond those of setup.sh. The tests seed PlatformIO for real, needed here or not.
-SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "libelf-dev", "libsimavr-dev"]}
+SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"]}
 
 
 def main() -> int:
