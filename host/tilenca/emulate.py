@@ -249,13 +249,21 @@ def _outcome(emulation: Emulation, started: float) -> Outcome:
 
 
 @contextmanager
-def _closely(emulation: Emulation, args: argparse.Namespace) -> Iterator[Callable[[], None]]:
-    """What is looked at besides the tiles' faces; the function is to be called after every slice of time."""
+def _closely(
+    emulation: Emulation, args: argparse.Namespace, stopped: Callable[[], bool] = lambda: False
+) -> Iterator[Callable[[], None]]:
+    """What is looked at besides the tiles' faces; the function is to be called after every slice of time.
+
+    Args:
+        emulation: the tiles.
+        args: the command line.
+        stopped: whether the run has been interrupted, for who waits outside the main thread.
+    """
     with (
         _kept_eeprom(emulation, args.eeprom),
         waveforms(emulation, args.vcd, args.pin) as waves,
         frames(emulation, args.frames) as log,
-        debuggers(emulation, args.gdb) as ports,
+        debuggers(emulation, args.gdb, stopped) as ports,
     ):
 
         def on_slice() -> None:
@@ -263,7 +271,7 @@ def _closely(emulation: Emulation, args: argparse.Namespace) -> Iterator[Callabl
                 waves.collect()
             if log is not None:
                 log.collect()
-            attend(ports)
+            attend(ports, stopped)
 
         on_slice()
         yield on_slice
@@ -297,7 +305,7 @@ def _run_all(
                 kept.extend(_record_line(shape, line) for line in heard)
 
         emulation = lay_out(shape)
-        with emulation.array, _closely(emulation, args) as on_slice:
+        with emulation.array, _closely(emulation, args, stopped.is_set) as on_slice:
             emulation.run(lambda _, heard: keep(heard, on_slice))
             return _outcome(emulation, started), kept
 

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TextIO
@@ -10,7 +10,7 @@ from typing import TextIO
 from tilenca.emulate_faults import SIDE_NAMES
 from tilenca.emulation import Emulation
 from tilenca.emulator import SOUTH, Waveforms, WireTap
-from tilenca.emulator_gdb import GdbPort
+from tilenca.emulator_gdb import WAIT_S, GdbPort
 from tilenca.errors import UsageError
 from tilenca.streams import warn
 
@@ -100,8 +100,10 @@ def frames(emulation: Emulation, path: Path | None) -> Iterator[FrameLog | None]
 
 
 @contextmanager
-def debuggers(emulation: Emulation, given: Sequence[str]) -> Iterator[list[GdbPort]]:
-    """Opens a remote port for each `TILE[:PORT]`, and waits until a debugger is at each.
+def debuggers(
+    emulation: Emulation, given: Sequence[str], stopped: Callable[[], bool]
+) -> Iterator[list[GdbPort]]:
+    """Opens a remote port for each `TILE[:PORT]`, and waits until a debugger is at each, or `stopped`.
 
     Raises:
         UsageError: no such tile, or the port is taken.
@@ -118,14 +120,14 @@ def debuggers(emulation: Emulation, given: Sequence[str]) -> Iterator[list[GdbPo
         for port, text in zip(ports, given, strict=True):
             warn(f"tile {text.partition(':')[0]} waits for: avr-gdb -ex 'target remote :{port.port}'")
         for port in ports:
-            port.wait()
+            port.wait(stopped)
         yield ports
 
 
-def attend(ports: Sequence[GdbPort]) -> None:
-    """Does what debuggers ask for; returns when all let the tiles go on."""
+def attend(ports: Sequence[GdbPort], stopped: Callable[[], bool]) -> None:
+    """Does what debuggers ask for; returns when all let the tiles go on, or `stopped`."""
     for port in ports:
         port.serve()
-    while halted := [port for port in ports if port.connected and not port.goes]:
+    while (halted := [port for port in ports if port.connected and not port.goes]) and not stopped():
         for port in halted:
-            port.serve(timeout_s=0.2)
+            port.serve(timeout_s=WAIT_S)

@@ -5,6 +5,7 @@ A tile that is halted halts all: they live in the same time.
 
 import select
 import socket
+from collections.abc import Callable
 from contextlib import suppress
 
 from tilenca.emulator import Array
@@ -18,6 +19,7 @@ STACK_POINTER = 0x5D
 INTERRUPT = 0x03
 TRAP, ILLEGAL, INTERRUPTED = 5, 4, 2  # signals, as GDB counts them
 SLICE_S = 0.005
+WAIT_S = 0.2
 READ_BYTES = 4096
 MOST_BYTES = 1024  # of memory in one answer
 
@@ -56,9 +58,16 @@ class GdbPort:
         """Whether the debugger has let the tile go on."""
         return self._goes
 
-    def wait(self) -> None:
-        """Waits until a debugger is there."""
-        self._accept()
+    def wait(self, stopped: Callable[[], bool] = lambda: False) -> None:
+        """Waits until a debugger is there.
+
+        Args:
+            stopped: asked now and then; True ends the waiting with KeyboardInterrupt.
+        """
+        while not self.connected:
+            if stopped():
+                raise KeyboardInterrupt
+            self.serve(timeout_s=WAIT_S)
 
     def serve(self, timeout_s: float = 0.0) -> None:
         """Does what the debugger has asked for by now, or tells it that the tile has halted.

@@ -2,9 +2,11 @@
 
 import json
 import re
+import signal
 import socket
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -210,3 +212,23 @@ def test_a_debugger_is_waited_for_and_then_obeyed() -> None:
             out, _ = running.communicate(timeout=60)
     assert running.returncode in (0, 1)
     assert json.loads(out)["simulated_s"] == 0.5
+
+
+@pytest.mark.parametrize("with_debugger", [False, True])
+@pytest.mark.parametrize("look", [(), ("--watch",)])
+def test_an_interrupt_ends_the_wait_for_a_debugger(with_debugger: bool, look: tuple[str, ...]) -> None:
+    command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shape", "1", "--gdb", "4", *look]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        port = re.search(r":(\d+)'", running.stderr.readline())
+        assert port
+        with ExitStack() as stack:
+            if with_debugger:
+                debugger = stack.enter_context(socket.create_connection(("127.0.0.1", int(port[1])), 60))
+                debugger.sendall(b"$?#3f")
+                assert debugger.recv(1) == b"+"
+            running.send_signal(signal.SIGINT)
+            _, err = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert err.splitlines()[-1] == "tilenca: interrupted"
+    assert "Traceback" not in err

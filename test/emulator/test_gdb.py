@@ -1,5 +1,6 @@
 """The GDB remote port: byte by byte, and with the real avr-gdb."""
 
+import random
 import shutil
 import socket
 import subprocess
@@ -112,6 +113,22 @@ def test_damaged_packets_are_asked_for_again(port: GdbPort) -> None:
     assert gdb.socket.recv(1) == b"-"
     gdb.socket.sendall(b"$?#zz")
     assert gdb.socket.recv(1) == b"-"
+    assert gdb.ask("?") == "S05"
+    gdb.socket.close()
+
+
+def test_senseless_packets_are_answered_and_survived(port: GdbPort) -> None:
+    draw = random.Random(3)
+    gdb = Debugger(port.port)
+    letters = "gGpPmMZzHTqvX?!Rbti0123456789abcdef,:;=+$ "
+    for _ in range(300):
+        body = "".join(draw.choice(letters) for _ in range(draw.randrange(1, 12)))
+        if body[0] in "mM":
+            address = draw.choice([0, 0x3FFFF, 0x800000, 0x8021FF, 0x810FFF, 0x811000, 2**32])
+            body = f"{body[0]}{address:x},{draw.choice([0, 1, 9999]):x}:"
+        packet = body.replace("$", "").replace("+", "").lstrip("c") or "?"  # c: the tile would go on
+        answer = gdb.ask(packet)
+        assert "#" not in answer
     assert gdb.ask("?") == "S05"
     gdb.socket.close()
 
