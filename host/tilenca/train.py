@@ -104,8 +104,9 @@ def run(args: argparse.Namespace) -> int:
     started = time.monotonic()
     plan = _plan(args)
     _check_device(args.device)
-    _announce(plan)
+    fits = fit.check(plan.dimensions, len(plan.task.labels))
     _check_out(args, plan)
+    _announce(plan, fits)
 
     from tilenca.keeping import Result, keep
     from tilenca.seedrun import Job, model_of, train_side_by_side
@@ -165,9 +166,9 @@ def _plan(args: argparse.Namespace) -> Plan:
     return Plan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
 
 
-def _announce(plan: Plan) -> None:
+def _announce(plan: Plan, fits: fit.Fit) -> None:
     """Says what will be trained, whether tiles can run it, and what nobody could tell apart."""
-    warn(str(fit.check(plan.dimensions, len(plan.task.labels))))
+    warn(str(fits))
     if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
         warn(
             f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
