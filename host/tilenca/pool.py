@@ -147,10 +147,9 @@ class Pools:
         self.quiet.states[self._quiet_taken] = padded[busy_count:]
         self.quiet.age[self._quiet_taken] += rounds[busy_count:]
         # Who was disturbed a moment ago may be wrong; who had time may not.
-        age = np.concatenate((self.busy.age[self._busy_taken], self.quiet.age[self._quiet_taken]))
-        seen = np.concatenate((self.busy.drawing[self._busy_taken], self.quiet.drawing[self._quiet_taken]))
-        had_time = age >= HAD_TIME
-        self.failures[seen[had_time]] += FORGETS * (~right[had_time] - self.failures[seen[had_time]])
+        had_time = self.busy.age[self._busy_taken] >= HAD_TIME
+        seen = self.busy.drawing[self._busy_taken][had_time]
+        self.failures[seen] += FORGETS * (~right[:busy_count][had_time] - self.failures[seen])
 
     def state(self) -> dict[str, Any]:
         """Everything that changes, as plain values and tensors for a checkpoint."""
