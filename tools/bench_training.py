@@ -71,6 +71,7 @@ def main() -> int:
         random,
         np.zeros(BATCH, np.bool_),
         np.zeros(cells, np.bool_),
+        np.ones(BATCH, np.bool_),
     )
     net = TileNet(Dimensions(), False, initial_arrays(Dimensions(), random, zero_last=False))
     with torch.no_grad():  # small steps, or states grow beyond what two orders of summation agree on

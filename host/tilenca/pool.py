@@ -48,6 +48,7 @@ class Taken:
         settled: (B,) bool, left alone for so long that nothing should change any more.
         late: (B,) bool, tissues to be switched on tile by tile.
         away: (N,) bool, tiles that are off, and will be back in the seed state when the tissue is next taken.
+        calm: (B,) bool, tissues of the quiet pool.
     """
 
     batch: Batch
@@ -55,6 +56,7 @@ class Taken:
     settled: NDArray[np.bool_]
     late: NDArray[np.bool_]
     away: NDArray[np.bool_]
+    calm: NDArray[np.bool_]
 
     @property
     def asked(self) -> NDArray[np.bool_]:
@@ -124,7 +126,8 @@ class Pools:
         for number in range(first, first + round(recipe.away * busy_count)):
             size = self.drawings.sizes[chosen[number]]
             away[batch.starts[number] + random.integers(size, size=random.integers(1, 3))] = True
-        return Taken(batch, states[batch.sample, batch.place], settled, late, away)
+        calm = np.arange(recipe.batch) >= busy_count
+        return Taken(batch, states[batch.sample, batch.place], settled, late, away, calm)
 
     def give_back(
         self, taken: Taken, states: States, rounds: NDArray[np.int64], right: NDArray[np.bool_]

@@ -29,7 +29,7 @@ class Recipe:
         switch: share of a batch rebuilt into another drawing while running.
         away: share of a batch in which a tile or two are off for once; what the others make of it is not held
             against them.
-        quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, so that nothing drifts; 0: none.
+        quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift; 0: none.
         quiet_batch: how many of them are in each batch.
         quiet_rounds: least and most rounds of an undisturbed life.
         quiet_penalty: weight of the squared change of settled states over one iteration.
@@ -117,9 +117,9 @@ FULL = Recipe(
     quiet_penalty=0.05,
     fire_rate=(0.3, 0.9),
     clocks=0.5,
-    lossy=0.4,
+    lossy=0.5,
     max_loss=0.3,
-    longest_loss=5,
+    longest_loss=1,
     unheard=0.5,
     max_unheard=0.7,
     stretch=10.0,

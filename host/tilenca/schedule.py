@@ -80,6 +80,7 @@ def draw_schedule(
     random: np.random.Generator,
     late: Flags,
     away: Flags,
+    calm: Flags,
 ) -> Schedule:
     """Draws one schedule for a batch: each sample on clocks or not, lossy or not, at its own rates.
 
@@ -90,6 +91,7 @@ def draw_schedule(
         random: the only source of chance.
         late: (B,) whose tiles are switched on at any time within their life.
         away: (N,) tiles that are off all the time.
+        calm: (B,) samples that lose no message.
     """
     samples, cells, rounds = len(batch.starts), len(batch.sample), int(lives.max())
     life = lives[batch.sample]
@@ -107,12 +109,13 @@ def draw_schedule(
         asleep = np.append(boot, 0)[neighbours] > when[:, None]
         neighbours[asleep] = cells
     if recipe.lossy > 0:
-        loss = random.uniform(0, recipe.max_loss, samples) * (random.random(samples) < recipe.lossy)
+        loss = random.uniform(0, recipe.max_loss, samples) * (random.random(samples) < recipe.lossy) * ~calm
         lasts = random.integers(1, recipe.longest_loss + 1, samples)
         fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
         neighbours[fate < loss[batch.sample][who, None]] = cells
     if recipe.unheard > 0:
         unheard = random.uniform(0, recipe.max_unheard, samples) * (random.random(samples) < recipe.unheard)
+        unheard *= ~calm
         some = np.flatnonzero(unheard[batch.sample])
         arrives[:, some] &= (
             random.random((rounds, len(some)), dtype=np.float32) >= unheard[batch.sample[some]]

@@ -114,7 +114,7 @@ class Trainer:
         taken = self.pools.take(self.iteration / recipe.iterations)
         batch = taken.batch
         lives = self._lives(batch)
-        schedule = draw_schedule(recipe, batch, lives, self.random, taken.late, taken.away)
+        schedule = draw_schedule(recipe, batch, lives, self.random, taken.late, taken.away, taken.calm)
 
         start = torch.from_numpy(taken.states).to(self.device)
         end = live(self.net, start * self.net.units, schedule) / self.net.units

@@ -30,6 +30,10 @@ def nobody(batch: Batch) -> NDArray[np.bool_]:
     return np.zeros(len(batch.sample), np.bool_)
 
 
+def rough(batch: Batch) -> NDArray[np.bool_]:
+    return np.zeros(len(batch.starts), np.bool_)
+
+
 def test_perceiving_real_cells_equals_a_convolution_over_the_whole_grid(drawings: Drawings) -> None:
     random = np.random.default_rng(1)
     for number, shape in enumerate(drawings.shapes):
@@ -106,7 +110,13 @@ def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latenc
     recipe = replace(recipe, latency=(0.5, 0.5))
     batch = drawings.batch(np.array([0]))
     schedule = draw_schedule(
-        recipe, batch, np.array([41]), np.random.default_rng(3), np.array([False]), nobody(batch)
+        recipe,
+        batch,
+        np.array([41]),
+        np.random.default_rng(3),
+        np.array([False]),
+        nobody(batch),
+        rough(batch),
     )
     fired, arrived, _ = schedule.by_cell()
     for cell in range(len(batch.sample)):
@@ -138,7 +148,7 @@ def test_a_loss_may_last(drawings: Drawings) -> None:
         some = replace(recipe, longest_loss=longest)
         random = np.random.default_rng(5)
         schedules = [
-            draw_schedule(some, batch, np.array([60]), random, np.array([False]), nobody(batch))
+            draw_schedule(some, batch, np.array([60]), random, np.array([False]), nobody(batch), rough(batch))
             for _ in range(30)
         ]
         heard = [schedule.by_cell()[2] < len(batch.sample) for schedule in schedules]
@@ -203,7 +213,9 @@ def test_any_number_of_threads_and_parts_lives_the_same_life(drawings: Drawings)
     random = np.random.default_rng(11)
     batch = drawings.batch(random.integers(len(drawings), size=9))
     lives = np.full(9, 10)
-    schedule = draw_schedule(RECIPES["full"], batch, lives, random, random.random(9) < 0.3, nobody(batch))
+    schedule = draw_schedule(
+        RECIPES["full"], batch, lives, random, random.random(9) < 0.3, nobody(batch), rough(batch)
+    )
     whole = schedule.by_cell()
     for wanted in (1, 2, 5, 40):
         parts = list(schedule.parts(wanted))
