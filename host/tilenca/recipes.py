@@ -29,7 +29,7 @@ class Recipe:
         switch: share of a batch rebuilt into another drawing while running.
         away: share of a batch in which a tile or two are off for once; what the others make of it is not held
             against them.
-        quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift; 0: none.
+        quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift.
         quiet_batch: how many of them are in each batch.
         quiet_rounds: least and most rounds of an undisturbed life.
         quiet_penalty: weight of the squared change of settled states over one iteration.

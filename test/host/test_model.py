@@ -78,6 +78,7 @@ def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawing
         random,
         random.random(len(drawings)) < 0.5,
         random.random(len(batch.sample)) < 0.1,
+        rough(batch),
     )
     pull = torch.from_numpy(random.normal(size=start.shape).astype(np.float32))
     ends, gradients = [], []
@@ -130,7 +131,13 @@ def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
     batch = drawings.batch(np.arange(len(drawings)))
     lives = np.full(len(drawings), 50)
     schedule = draw_schedule(
-        recipe, batch, lives, np.random.default_rng(3), np.zeros(len(drawings), bool), nobody(batch)
+        recipe,
+        batch,
+        lives,
+        np.random.default_rng(3),
+        np.zeros(len(drawings), bool),
+        nobody(batch),
+        rough(batch),
     )
     fires, _, neighbours = schedule.by_cell()
     lost = fires[:, :, None] & (neighbours != batch.neighbours)
@@ -161,7 +168,13 @@ def test_nobody_updates_before_being_switched_on_or_after_the_end_of_its_life(dr
     recipe = replace(RECIPES["full"], lossy=0.0, fire_rate=(1.0, 1.0), clocks=0.0)
     batch = drawings.batch(np.array([0, 0]))
     schedule = draw_schedule(
-        recipe, batch, np.array([20, 30]), np.random.default_rng(3), np.array([True, False]), nobody(batch)
+        recipe,
+        batch,
+        np.array([20, 30]),
+        np.random.default_rng(3),
+        np.array([True, False]),
+        nobody(batch),
+        rough(batch),
     )
     fires, _, neighbours = schedule.by_cell()
     late, prompt = fires[:, batch.sample == 0], fires[:, batch.sample == 1]
@@ -234,7 +247,7 @@ def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings)
     net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), random, zero_last=False))
     batch = drawings.batch(random.integers(len(drawings), size=16))
     schedule = draw_schedule(
-        RECIPES["full"], batch, np.full(16, 12), random, np.zeros(16, np.bool_), nobody(batch)
+        RECIPES["full"], batch, np.full(16, 12), random, np.zeros(16, np.bool_), nobody(batch), rough(batch)
     )
     start = torch.zeros(len(batch.sample), 21)
     start[:, 0] = net.units
