@@ -137,7 +137,7 @@ def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
         label = "training samples" if number == 0 else _question(name[1:])
         _draw_line(axes, data["iteration"], data[name], number, label)
     if len(lines) > 1:
-        axes.legend(loc="lower right")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, fontsize="small")
     axes.set_ylim(-0.02, 1.02)
     axes.set_ylabel("share with every tile right")
     axes.set_xlabel("iteration")
@@ -147,7 +147,7 @@ def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
 
 
 def _question(name: str) -> str:
-    return f"measured after {name} steps" if name.isdigit() else f"measured: {name}"
+    return f"measured after {name} steps" if name.isdigit() else name
 
 
 def _draw_line(
