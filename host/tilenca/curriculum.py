@@ -4,7 +4,7 @@ Every drawing has a scale, within which tissues are rebuilt into each other, and
 tissues. All of it follows from the task, the recipe and one generator of chance.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,12 +61,12 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     unknown = {
         name: list(_unknown(scales, which, each, draw, known, random)) if with_unknown else []
         for name, which, each, draw in (
-            ("strokes", drawn_scales, 100, _some_strokes),
-            ("edited", drawn_scales, 100, _some_edited),
-            ("halves", drawn_scales, 100, _some_halves),
-            ("grown", drawn_scales, 100, _some_grown),
-            ("elsewhere", others, 8, _some_strokes),
-            ("elsewhere edited", others, 3, _some_edited),
+            ("strokes", drawn_scales, 100, variants.some_strokes),
+            ("edited", drawn_scales, 100, variants.some_edited),
+            ("halves", drawn_scales, 100, variants.some_halves),
+            ("grown", drawn_scales, 100, variants.some_grown),
+            ("elsewhere", others, 8, variants.some_strokes),
+            ("elsewhere edited", others, 3, variants.some_edited),
         )
     }
     shares = {
@@ -98,10 +98,7 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
 
 def _scales(task: Drawings, sizes: Sequence[Size]) -> list[list[Shape]]:
     """The drawings file by file, then those of the first file at every other size."""
-    files = [
-        [shape for shape, group in zip(task.shapes, task.groups, strict=True) if group == number]
-        for number in range(len(task.sources))
-    ]
+    files = [task.group(number) for number in range(len(task.sources))]
     taken: dict[Rows, str] = {shape.rows: shape.label for shape in task.shapes}
     scales = list(files)
     for size in sizes:
@@ -123,14 +120,11 @@ def _damaged(scales: list[list[Shape]], known: Known) -> Iterator[tuple[int, Sha
                 yield number, Shape(shape.label, rows, f"{shape.name}{DAMAGED}")
 
 
-Drawer = Callable[[Sequence[Rows], np.random.Generator], Callable[[], Rows | None]]
-
-
 def _unknown(
     scales: list[list[Shape]],
     which: Iterable[int],
     each: int,
-    drawer: Drawer,
+    drawer: variants.Drawer,
     known: Known,
     random: np.random.Generator,
 ) -> Iterator[tuple[int, Shape]]:
@@ -141,24 +135,3 @@ def _unknown(
             each, draw, lambda rows: not known.is_known(rows) and not variants.held_out(rows)
         ):
             yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")
-
-
-def _some_grown(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
-    height, width = max(map(len, drawings)), max(len(rows[0]) for rows in drawings)
-    most = max(sum(row.count("#") for row in rows) for rows in drawings)
-    return lambda: variants.grown(random, int(random.integers(min(3, most), most + 1)), height + 1, width + 1)
-
-
-def _some_halves(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
-    return lambda: variants.half(random, drawings[int(random.integers(len(drawings)))])
-
-
-def _some_edited(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
-    return lambda: variants.edited(
-        random, drawings[int(random.integers(len(drawings)))], int(random.integers(4, 8))
-    )
-
-
-def _some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
-    strokes = variants.segments(drawings)
-    return lambda: variants.some_segments(random, strokes)

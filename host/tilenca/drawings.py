@@ -66,8 +66,12 @@ class Drawings:
     @property
     def largest(self) -> tuple[int, int]:
         """Most rows and most columns of the first file's drawings."""
-        first = [shape.rows for shape, group in zip(self.shapes, self.groups, strict=True) if group == 0]
+        first = [shape.rows for shape in self.group(0)]
         return max(map(len, first)), max(len(rows[0]) for rows in first)
+
+    def group(self, number: int) -> list[Shape]:
+        """The drawings of one group, in their order."""
+        return [shape for shape, group in zip(self.shapes, self.groups, strict=True) if group == number]
 
     @cached_property
     def classes(self) -> Indices:

@@ -93,14 +93,9 @@ def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, 
         seed: of the unknown drawings.
     """
     task = replace(task, labels=labels)
-    first = [shape for shape, group in zip(task.shapes, task.groups, strict=True) if group == 0]
+    first = task.group(0)
     drawn = tuple(
-        Paper(
-            "drawn",
-            source["file"],
-            task.chosen(n for n, group in enumerate(task.groups) if group == number),
-            60,
-        )
+        Paper("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
     known = Known((shape.label, shape.rows) for shape in task.shapes)
@@ -177,23 +172,14 @@ def _unknown_papers(
 ) -> Iterable[Paper]:
     random = np.random.default_rng(seed)
     drawings = [shape.rows for shape in first]
-    height, width = task.largest
-    most = max(len(shape.cells) for shape in first)
-    strokes = variants.segments(drawings)
-
-    def grown() -> Rows:
-        return variants.grown(random, int(random.integers(min(4, most), most + 1)), height + 1, width + 1)
-
-    def halved() -> Rows:
-        return variants.half(random, drawings[int(random.integers(len(drawings)))])
 
     def fits(rows: Rows) -> bool:
         return variants.held_out(rows) and not known.is_known(rows)
 
     for name, wanted, draw in (
-        ("random drawings", 500, grown),
-        ("halves of drawings", 100, halved),
-        ("other choices of the same strokes", 100, lambda: variants.some_segments(random, strokes)),
+        ("random drawings", 500, variants.some_grown(drawings, random, least=4)),
+        ("halves of drawings", 100, variants.some_halves(drawings, random)),
+        ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
     ):
         if found := variants.draw_until(wanted, draw, fits):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]

@@ -143,6 +143,35 @@ def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Row
     return found
 
 
+# Given drawings, draws one after the other of those made from them; None where a try came to nothing.
+Drawer = Callable[[Sequence[Rows], np.random.Generator], Callable[[], Rows | None]]
+
+
+def some_grown(
+    drawings: Sequence[Rows], random: np.random.Generator, least: int = 3
+) -> Callable[[], Rows | None]:
+    """Random drawings of about the size of the given ones, of `least` tiles or more if those have as many."""
+    height, width = max(map(len, drawings)), max(len(rows[0]) for rows in drawings)
+    most = max(sum(row.count("#") for row in rows) for rows in drawings)
+    return lambda: grown(random, int(random.integers(min(least, most), most + 1)), height + 1, width + 1)
+
+
+def some_halves(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Halves of any of the drawings."""
+    return lambda: half(random, drawings[int(random.integers(len(drawings)))])
+
+
+def some_edited(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Any of the drawings with four to seven edits."""
+    return lambda: edited(random, drawings[int(random.integers(len(drawings)))], int(random.integers(4, 8)))
+
+
+def some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Other choices of the drawings' strokes."""
+    strokes = segments(drawings)
+    return lambda: some_segments(random, strokes)
+
+
 def _grow(random: np.random.Generator, tiles: int, room: set[Cell]) -> Rows:
     """Tiles put down one after the other, each beside one that lies there already."""
     everywhere = sorted(room)
