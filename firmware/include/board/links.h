@@ -19,5 +19,9 @@ bool link_idle(Side side);
 // Starts sending a frame of at most kMaxFrame bytes; only when link_idle().
 void link_write(Side side, const uint8_t* bytes, uint8_t size);
 
+// How many bytes, or on the south side how many batches of edges, were lost for want of room or to noise;
+// stops at 65,535.
+uint16_t link_overruns(Side side);
+
 } // namespace board
 } // namespace tilenca

@@ -1,4 +1,4 @@
-// A queue of bytes between an interrupt and the main loop: one side only puts, the other only takes.
+// Queues of bytes between an interrupt and the main loop: one side only puts, the other only takes.
 #pragma once
 
 #include <stdint.h>
@@ -6,36 +6,49 @@
 namespace tilenca {
 namespace board {
 
-// Holds kSize - 1 bytes; kSize is a power of two, at most 256, so that indices are single bytes and therefore
-// never half-written when an interrupt looks.
+// Memory for queues. Its address is a multiple of 256, so that an index is the low byte of a pointer: an
+// interrupt then needs no arithmetic, and no arithmetic needs no flags saved.
+struct Page {
+    volatile uint8_t bytes[256];
+} __attribute__((aligned(256)));
+
+// One queue of kSize - 1 bytes at most in a page that it shares with 256 / kSize - 1 others. Indices are
+// single bytes and therefore never half-written when an interrupt looks.
 template <uint16_t kSize>
 struct Ring {
     static_assert(kSize <= 256 && (kSize & (kSize - 1)) == 0, "indices wrap by masking");
     static constexpr uint8_t kWrap = kSize - 1;
+
+    // The index after this one, in the same part of the page.
+    static uint8_t after(uint8_t at) {
+        return static_cast<uint8_t>((at & ~kWrap) | ((at + 1) & kWrap));
+    }
+
+    // Empties the queue, whose bytes begin there in the page. Only while its interrupt is off.
+    void begin(uint8_t first) { head = tail = first; }
 
     bool empty() const { return head == tail; }
 
     uint8_t room() const { return static_cast<uint8_t>((tail - head - 1) & kWrap); }
 
     // Only when there is room().
-    void put(uint8_t byte) {
+    void put(Page& page, uint8_t byte) {
         const uint8_t at = head;
-        bytes[at] = byte;
-        head = (at + 1) & kWrap;
+        page.bytes[at] = byte;
+        head = after(at);
     }
 
     // Only when not empty().
-    uint8_t take() {
+    uint8_t take(const Page& page) {
         const uint8_t at = tail;
-        const uint8_t byte = bytes[at];
-        tail = (at + 1) & kWrap;
+        const uint8_t byte = page.bytes[at];
+        tail = after(at);
         return byte;
     }
 
     // Plain members, since interrupts in assembly work on them too.
     volatile uint8_t head = 0; // where the next byte goes
     volatile uint8_t tail = 0; // the oldest byte
-    volatile uint8_t bytes[kSize];
 };
 
 } // namespace board

@@ -2,6 +2,9 @@
 //
 // Receiving: the pin-change interrupt only stores timer 5's count in a ring of edges; read() turns them into
 // bytes. Sending: timer 1 (whose other half is red's PWM) toggles the line bit by bit from a prepared list.
+//
+// A line that changes faster than any UART's, a floating one near a motor, say, could keep the processor in
+// that interrupt for ever. So the line is not listened to for a while after such noise.
 #pragma once
 
 #include <stdint.h>
@@ -24,6 +27,10 @@ void south_write(const uint8_t* bytes, uint8_t size);
 
 // Whether the last frame is out.
 bool south_idle();
+
+// How often edges were lost: they were not read in time, or they came too fast to be anything but noise.
+// Stops at 65,535.
+uint16_t south_overruns();
 
 } // namespace board
 } // namespace tilenca

@@ -7,7 +7,7 @@
 namespace tilenca {
 namespace board {
 
-// 8N1. Reception is on for the three links; the host's USART only sends.
+// 8N1, both directions.
 void usart_begin(uint8_t number, uint32_t baud);
 
 // The next byte received, if any.
@@ -18,6 +18,9 @@ bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 
 // Whether nothing is queued; up to two bytes may still be leaving.
 bool usart_idle(uint8_t number);
+
+// How many bytes were lost because they were not read in time; stops at 65,535.
+uint16_t usart_overruns(uint8_t number);
 
 } // namespace board
 } // namespace tilenca

@@ -23,6 +23,9 @@ class EdgeReceiver {
     // four times per turn of the timer, or a byte without edges at its end waits for the next one.
     int16_t poll(uint16_t now);
 
+    // Forgets what it has heard: edges were lost, or the line is not to be believed.
+    void reset();
+
   private:
     static constexpr uint8_t kIdle = 0xFF;
 

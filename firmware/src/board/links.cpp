@@ -44,5 +44,9 @@ void link_write(Side side, const uint8_t* bytes, uint8_t size) {
     }
 }
 
+uint16_t link_overruns(Side side) {
+    return side == Side::South ? south_overruns() : usart_overruns(usart_of(side));
+}
+
 } // namespace board
 } // namespace tilenca

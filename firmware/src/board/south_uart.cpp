@@ -2,8 +2,11 @@
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
+#include <util/atomic.h>
 
 #include "board/gpio.h"
+#include "board/ring.h"
+#include "board/scratch.h"
 #include "core/edge_receiver.h"
 #include "core/toggles.h"
 
@@ -15,36 +18,80 @@ namespace {
 // Timer 5 counts F_CPU / 8: 2 MHz / 38,400 is 52.1.
 constexpr uint8_t kSouthBitCounts = 52;
 
+// A UART's edges are a bit apart at least. What comes this much faster on average, but for a few, is noise.
+constexpr uint8_t kFastestCounts = 32;
+constexpr uint8_t kFewEdges = 32;
+// How long noise makes deaf: 20 ms. To fill the ring takes the interrupt less than one.
+constexpr uint16_t kRestCounts = 40000;
+
 static_assert(kSouthRx.port == 'K' && kSouthRx.bit == 6, "PCINT22 and the interrupt below");
 static_assert(kSouthTx.port == 'K' && kSouthTx.bit == 7, "the toggles below leave from bit 7");
 
-// GPIOR registers stand in for variables where a cycle counts: `in` and `out` take one, `lds` and `sts` two.
-#define SOUTH_EDGE_HEAD GPIOR2 // where the next edge's stamp goes
-#define SOUTH_BITS GPIOR0      // toggles left of the current byte, the next in bit 7
-#define SOUTH_BITS_LEFT GPIOR1 // how many
-
-// The edges' stamps: all low bytes, then all high bytes, so that one index serves both and wraps by itself.
-volatile uint8_t edge_low_high[2][256];
-uint8_t edge_tail = 0;
+// A ring of edges. Its head is SOUTH_EDGE_HEAD, its tail SOUTH_EDGE_TAIL. That of an edge is the place of its
+// count's low byte and of port K's levels; the count's high byte lies one further.
+Page edge_lows;
+Page edge_highs;
+Page edge_levels;
 EdgeReceiver receiver(kSouthBitCounts);
+uint16_t emptied_at = 0; // when the ring was last found empty
+uint16_t rests_since = 0;
+uint16_t overruns = 0;
 
-// The interrupt reads one byte beyond the last before it notices.
-volatile uint8_t toggles[kMaxToggleBytes + 1];
-volatile uint8_t toggle_at = 0;
-volatile uint8_t toggle_end = 0;
+// What is being sent: SOUTH_TOGGLES is shifted out, these follow. The alignment keeps them in one page.
+volatile uint8_t toggles[kMaxToggleBytes] __attribute__((aligned(128)));
+static_assert(kMaxToggleBytes <= 128, "one index reaches all of them");
+volatile uint8_t toggles_at = 0; // the low byte of the next one's address
 
 // The 16-bit read goes through a register that the interrupt uses too.
 uint16_t timer5_count() {
-    const uint8_t interrupts = SREG;
-    cli();
-    const uint16_t count = TCNT5;
-    SREG = interrupts;
+    uint16_t count;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { count = TCNT5; }
     return count;
+}
+
+bool listening() {
+    return PCICR & 1 << PCIE2;
+}
+
+void listen(uint16_t now) {
+    SOUTH_EDGE_HEAD = 0;
+    SOUTH_EDGE_TAIL = 0;
+    receiver.reset();
+    emptied_at = now;
+    PCIFR = 1 << PCIF2;
+    PCICR = 1 << PCIE2;
+}
+
+// Gives up what waits in the ring. Too many edges for the time they took are noise, which would soon fill it
+// again; otherwise the main loop was late.
+void lose_edges(uint16_t now, bool noise) {
+    overruns += overruns != UINT16_MAX;
+    if (!noise) {
+        listen(now);
+        return;
+    }
+    PCICR = 0;
+    SOUTH_EDGE_TAIL = SOUTH_EDGE_HEAD;
+    rests_since = now;
+}
+
+uint8_t edges_waiting() {
+    return static_cast<uint8_t>(SOUTH_EDGE_HEAD - SOUTH_EDGE_TAIL);
+}
+
+uint16_t take_edge() {
+    const uint8_t at = SOUTH_EDGE_TAIL;
+    const uint16_t high = edge_highs.bytes[static_cast<uint8_t>(at + 1)];
+    const uint8_t low = edge_lows.bytes[at] & 0xFE;
+    const uint8_t level = edge_levels.bytes[at] >> kSouthRx.bit & 1;
+    SOUTH_EDGE_TAIL = at + 1;
+    return static_cast<uint16_t>(high << 8 | low | level);
 }
 
 } // namespace
 
 void south_begin() {
+    scratch_begin();
     set(kSouthTx, true); // an idle line is high, before it is driven
     make_output(kSouthTx);
     pull_up(kSouthRx);
@@ -52,8 +99,7 @@ void south_begin() {
     TCCR5A = 0;
     TCCR5B = 1 << CS51;
     PCMSK2 = mask_of(kSouthRx);
-    PCIFR = 1 << PCIF2;
-    PCICR |= 1 << PCIE2;
+    listen(timer5_count());
 
     // Fast PWM with ICR1 as top (mode 14), no prescaler. The mode comes first: the chip ignores writes to
     // ICR1 in a mode that does not use it as top (datasheet, "Input Capture Register").
@@ -69,13 +115,24 @@ void south_begin() {
 bool south_read(uint8_t* byte) {
     // `now` before the ring: an edge that comes in between is then taken before its time, which does no harm.
     const uint16_t now = timer5_count();
+    const uint8_t waiting = edges_waiting();
+    if (!listening() && waiting == 0) {
+        if (static_cast<uint16_t>(now - rests_since) >= kRestCounts) {
+            listen(now);
+        }
+        return false;
+    }
+    const bool noise = waiting > static_cast<uint16_t>(now - emptied_at) / kFastestCounts + kFewEdges;
+    if (noise || !listening()) { // or the interrupt found no room and turned itself off
+        lose_edges(now, noise);
+        return false;
+    }
     int16_t result = EdgeReceiver::kNoByte;
-    while (result == EdgeReceiver::kNoByte && edge_tail != SOUTH_EDGE_HEAD) {
-        const uint16_t high = edge_low_high[1][edge_tail];
-        result = receiver.edge(static_cast<uint16_t>(high << 8 | edge_low_high[0][edge_tail]));
-        ++edge_tail;
+    while (result == EdgeReceiver::kNoByte && SOUTH_EDGE_TAIL != SOUTH_EDGE_HEAD) {
+        result = receiver.edge(take_edge());
     }
     if (result == EdgeReceiver::kNoByte) {
+        emptied_at = now;
         result = receiver.poll(now);
     }
     *byte = static_cast<uint8_t>(result);
@@ -84,10 +141,9 @@ bool south_read(uint8_t* byte) {
 
 void south_write(const uint8_t* bytes, uint8_t size) {
     // The interrupt is off while this writes.
-    toggle_end = toggles_of(bytes, size, const_cast<uint8_t*>(toggles));
-    toggle_at = 1;
-    SOUTH_BITS = toggles[0];
-    SOUTH_BITS_LEFT = 8;
+    toggles_of(bytes, size, const_cast<uint8_t*>(toggles));
+    SOUTH_TOGGLES = toggles[0];
+    toggles_at = static_cast<uint8_t>(reinterpret_cast<uintptr_t>(&toggles[1]));
     TIFR1 = 1 << OCF1B; // an old match would make the first bit short
     TIMSK1 = 1 << OCIE1B;
 }
@@ -96,90 +152,84 @@ bool south_idle() {
     return TIMSK1 == 0;
 }
 
+uint16_t south_overruns() {
+    return overruns;
+}
+
 // By hand, both: every other interrupt waits for these, and what an edge is late by is lost from the half bit
 // that a receiver's sampling allows. The compiler needs twice the cycles.
 
-// First of all the line, so that every edge comes equally late; then, every eighth time, the next toggles.
+// First of all the line, so that every edge comes equally late; then, every seventh time, the next toggles.
 ISR(TIMER1_COMPB_vect, ISR_NAKED) {
-    __asm__ volatile("push r24 \n\t"
+    __asm__ volatile("out %[r24], r24 \n\t"
                      "in r24, __SREG__ \n\t"
-                     "push r24 \n\t"
-                     "push r25 \n\t"
+                     "out %[flags], r24 \n\t"
                      "in r24, %[bits] \n\t"
-                     "mov r25, r24 \n\t"
-                     "andi r25, 0x80 \n\t"
-                     "sts %[pins], r25 \n\t"
                      "lsl r24 \n\t"
                      "out %[bits], r24 \n\t"
-                     "in r24, %[left] \n\t"
-                     "dec r24 \n\t"
-                     "out %[left], r24 \n\t"
-                     "brne 2f \n\t"
+                     "brcc 1f \n\t"
+                     "ldi r24, 0x80 \n\t"
+                     "sts %[pins], r24 \n\t"
+                     "in r24, %[bits] \n\t"
+                     "1: cpi r24, %[end] \n\t"
+                     "brne 3f \n\t"
                      "push r30 \n\t"
                      "push r31 \n\t"
-                     "ldi r24, 8 \n\t"
-                     "out %[left], r24 \n\t"
                      "lds r30, %[at] \n\t"
-                     "lds r24, %[end] \n\t"
-                     "sub r24, r30 \n\t"
-                     "brne 1f \n\t"
-                     "sts %[mask], r24 \n\t" // all are out: no more interrupts
-                     "1: mov r31, r30 \n\t"
-                     "inc r31 \n\t"
-                     "sts %[at], r31 \n\t"
-                     "clr r31 \n\t"
-                     "subi r30, lo8(-(%[toggles])) \n\t"
-                     "sbci r31, hi8(-(%[toggles])) \n\t"
-                     "ld r24, Z \n\t"
-                     "out %[bits], r24 \n\t"
+                     "ldi r31, hi8(%[toggles]) \n\t"
+                     "ld r24, Z+ \n\t"
+                     "sts %[at], r30 \n\t"
                      "pop r31 \n\t"
                      "pop r30 \n\t"
-                     "2: pop r25 \n\t"
-                     "pop r24 \n\t"
+                     "out %[bits], r24 \n\t"
+                     "cpi r24, %[end] \n\t"
+                     "brne 3f \n\t"
+                     "ldi r24, 0 \n\t"
+                     "sts %[mask], r24 \n\t" // all are out: no more interrupts
+                     "3: in r24, %[flags] \n\t"
                      "out __SREG__, r24 \n\t"
-                     "pop r24 \n\t"
+                     "in r24, %[r24] \n\t"
                      "reti \n\t"
                      :
-                     : [bits] "I"(_SFR_IO_ADDR(SOUTH_BITS)), [left] "I"(_SFR_IO_ADDR(SOUTH_BITS_LEFT)),
+                     : [r24] "I"(_SFR_IO_ADDR(SCRATCH_R24)), [flags] "I"(_SFR_IO_ADDR(SCRATCH_R30)),
+                       [bits] "I"(_SFR_IO_ADDR(SOUTH_TOGGLES)), [end] "n"(int{kNoMoreToggles}),
                        [pins] "n"(_SFR_MEM_ADDR(PINK)), [mask] "n"(_SFR_MEM_ADDR(TIMSK1)),
-                       [at] "i"(&toggle_at), [end] "i"(&toggle_end), [toggles] "i"(toggles));
+                       [at] "i"(&toggles_at), [toggles] "i"(toggles));
 }
 
-// Stores timer 5's count with the line's level in bit 0. Z points to the slot of the low byte; 256 further
-// lies the high byte's.
+// Stores timer 5's count and port K's levels. Not a flag is touched: none has to be saved.
 ISR(PCINT2_vect, ISR_NAKED) {
-    __asm__ volatile("push r24 \n\t"
-                     "in r24, __SREG__ \n\t"
-                     "push r24 \n\t"
-                     "push r25 \n\t"
-                     "push r30 \n\t"
-                     "push r31 \n\t"
+    __asm__ volatile("out %[r24], r24 \n\t"
+                     "out %[r30], r30 \n\t"
+                     "out %[r31], r31 \n\t"
                      "lds r24, %[count] \n\t" // the low byte first: it latches the high one
-                     "lds r25, %[count] + 1 \n\t"
-                     "lds r30, %[pins] \n\t"
-                     "andi r24, 0xFE \n\t"
-                     "sbrc r30, %[rx] \n\t"
-                     "ori r24, 1 \n\t"
                      "in r30, %[head] \n\t"
-                     "mov r31, r30 \n\t"
-                     "inc r31 \n\t"
-                     "out %[head], r31 \n\t"
-                     "clr r31 \n\t"
-                     "subi r30, lo8(-(%[edges])) \n\t"
-                     "sbci r31, hi8(-(%[edges])) \n\t"
+                     "ldi r31, hi8(%[lows]) \n\t"
                      "st Z, r24 \n\t"
-                     "inc r31 \n\t"
-                     "st Z, r25 \n\t"
-                     "pop r31 \n\t"
-                     "pop r30 \n\t"
-                     "pop r25 \n\t"
-                     "pop r24 \n\t"
-                     "out __SREG__, r24 \n\t"
-                     "pop r24 \n\t"
+                     "lds r24, %[pins] \n\t"
+                     "ldi r31, hi8(%[levels]) \n\t"
+                     "st Z+, r24 \n\t"
+                     "lds r24, %[count] + 1 \n\t"
+                     "ldi r31, hi8(%[highs]) \n\t"
+                     "st Z, r24 \n\t"
+                     "in r24, %[tail] \n\t"
+                     "cpse r30, r24 \n\t"
+                     "rjmp 1f \n\t"
+                     "ldi r24, 0 \n\t"
+                     "sts %[control], r24 \n\t" // no room: no more interrupts
+                     "rjmp 2f \n\t"
+                     "1: out %[head], r30 \n\t"
+                     "2: in r31, %[r31] \n\t"
+                     "in r30, %[r30] \n\t"
+                     "in r24, %[r24] \n\t"
                      "reti \n\t"
                      :
-                     : [count] "n"(_SFR_MEM_ADDR(TCNT5)), [pins] "n"(_SFR_MEM_ADDR(PINK)),
-                       [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)), [rx] "I"(PK6), [edges] "i"(edge_low_high));
+                     : [r24] "I"(_SFR_IO_ADDR(SCRATCH_R24)), [r30] "I"(_SFR_IO_ADDR(SCRATCH_R30)),
+                       [r31] "I"(_SFR_IO_ADDR(SCRATCH_R31)), [count] "n"(_SFR_MEM_ADDR(TCNT5)),
+                       [pins] "n"(_SFR_MEM_ADDR(PINK)), [control] "n"(_SFR_MEM_ADDR(PCICR)),
+                       [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)), [tail] "I"(_SFR_IO_ADDR(SOUTH_EDGE_TAIL)),
+                       [lows] "i"(edge_lows.bytes), [highs] "i"(edge_highs.bytes),
+                       [levels] "i"(edge_levels.bytes));
 }
 
 } // namespace board

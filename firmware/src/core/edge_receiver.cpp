@@ -28,19 +28,34 @@ int16_t EdgeReceiver::edge(uint16_t stamp) {
 }
 
 int16_t EdgeReceiver::poll(uint16_t now) {
-    while (bit_ != kIdle && static_cast<int16_t>(now - sample_at_) >= 0) {
-        sample_at_ += bit_counts_;
-        if (bit_ == kStartBit) {
-            bit_ = level_ ? kIdle : kStartBit + 1; // high again so soon: a glitch, no start bit
-        } else if (bit_ < kStopBit) {
-            byte_ = static_cast<uint8_t>(byte_ >> 1 | level_ << 7);
-            ++bit_;
+    // Copies, because a store to a member of one byte might, for all the compiler knows, change any other.
+    const uint8_t high = level_ ? 0x80 : 0;
+    const uint8_t bit_counts = bit_counts_;
+    uint8_t bit = bit_;
+    uint8_t byte = byte_;
+    int16_t since_sample = static_cast<int16_t>(now - sample_at_);
+    int16_t result = kNoByte;
+    while (bit != kIdle && since_sample >= 0) {
+        since_sample -= bit_counts;
+        if (bit == kStartBit) {
+            bit = high ? kIdle : kStartBit + 1; // high again so soon: a glitch, no start bit
+        } else if (bit < kStopBit) {
+            byte = static_cast<uint8_t>(byte >> 1 | high);
+            ++bit;
         } else {
-            bit_ = kIdle;
-            return level_ ? byte_ : kNoByte; // no stop bit: not a byte
+            bit = kIdle;
+            result = high ? byte : kNoByte; // no stop bit: not a byte
         }
     }
-    return kNoByte;
+    bit_ = bit;
+    byte_ = byte;
+    sample_at_ = now - static_cast<uint16_t>(since_sample);
+    return result;
+}
+
+void EdgeReceiver::reset() {
+    level_ = true;
+    bit_ = kIdle;
 }
 
 } // namespace tilenca

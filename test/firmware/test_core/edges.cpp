@@ -82,8 +82,8 @@ std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, d
 std::vector<Edge> edges_of_toggles(const uint8_t* toggles, uint8_t size) {
     std::vector<Edge> edges;
     bool level = true;
-    for (int bit = 0; bit < size * 8; ++bit) {
-        if (toggles[bit / 8] << bit % 8 & 0x80) {
+    for (int bit = 0; bit < (size - 1) * kTogglesPerByte; ++bit) {
+        if (toggles[bit / kTogglesPerByte] << bit % kTogglesPerByte & 0x80) {
             level = !level;
             edges.push_back({1000 + bit * kBitCycles, level});
         }
@@ -218,6 +218,28 @@ TEST_CASE("the bytes do not depend on how often the main loop comes by") {
     }
 }
 
+TEST_CASE("after a reset in the middle of a byte the next one is right") {
+    Line line(1000);
+    line.send(0x35);
+    for (size_t heard = 0; heard <= line.edges.size(); ++heard) {
+        CAPTURE(heard);
+        EdgeReceiver receiver(52);
+        for (size_t i = 0; i < heard; ++i) {
+            receiver.edge(static_cast<uint16_t>((count_at(line.edges[i].cycle) & ~1) | line.edges[i].level));
+        }
+        receiver.reset();
+        CHECK(receiver.poll(count_at(line.cycle + kByteCycles)) == EdgeReceiver::kNoByte);
+        Line next(line.cycle + 2 * kByteCycles);
+        next.send(0xC3);
+        int16_t byte = EdgeReceiver::kNoByte;
+        for (const Edge& edge : next.edges) {
+            byte = receiver.edge(static_cast<uint16_t>((count_at(edge.cycle) & ~1) | edge.level));
+            CHECK(byte == EdgeReceiver::kNoByte);
+        }
+        CHECK(receiver.poll(count_at(next.cycle)) == 0xC3);
+    }
+}
+
 TEST_CASE("what the toggles send is what was to be sent") {
     Numbers numbers(6);
     for (int size = 1; size <= kMaxFrame; ++size) {
@@ -225,7 +247,11 @@ TEST_CASE("what the toggles send is what was to be sent") {
         const auto sent = numbers.draw_all<uint8_t>(static_cast<size_t>(size), 0, 255);
         uint8_t toggles[kMaxToggleBytes];
         const uint8_t written = toggles_of(sent.data(), static_cast<uint8_t>(size), toggles);
-        CHECK(written == (size * 10 + 7) / 8);
+        CHECK(written == (size * 10 + 6) / 7 + 1);
+        CHECK(toggles[written - 1] == kNoMoreToggles);
+        for (uint8_t i = 0; i + 1 < written; ++i) {
+            CHECK((toggles[i] & 1) == 1);
+        }
         const auto edges = edges_of_toggles(toggles, written);
         CHECK(edges.size() % 2 == 0); // the line ends high
         CHECK(receive(edges, 1000 + size * kByteCycles) == sent);
