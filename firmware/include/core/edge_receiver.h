@@ -15,25 +15,101 @@ class EdgeReceiver {
     // `bit_counts`: length of a bit in counts of the timer that stamps the edges, at least 8.
     explicit EdgeReceiver(uint8_t bit_counts) : bit_counts_(bit_counts) {}
 
-    // The line changed. Bit 0 of the stamp is the new level, the others are the timer's count. Returns the
-    // byte that this completed, or kNoByte.
-    int16_t edge(uint16_t stamp);
-
-    // No further edge came until `now`. Returns the byte that this completed, or kNoByte. Call it at least
-    // four times per turn of the timer, or a byte without edges at its end waits for the next one.
-    int16_t poll(uint16_t now);
+    // Takes edges from the source until a byte is complete, and returns it; or, when there are no more, what
+    // is complete at the time `now`, if anything, or kNoByte. Call it at least four times per turn of the
+    // timer, or a byte without edges at its end waits for the next one.
+    //
+    // `source(&stamp)` gives the next edge, or false. Bit 0 of the stamp is the new level, the others are the
+    // timer's count. `now` is not before the last of them.
+    template <typename Source>
+    int16_t receive(Source source, uint16_t now);
 
     // Forgets what it has heard: edges were lost, or the line is not to be believed.
     void reset();
 
   private:
+    static constexpr uint8_t kStartBit = 0;
+    static constexpr uint8_t kStopBit = 9;
     static constexpr uint8_t kIdle = 0xFF;
+    static constexpr uint8_t kHigh = 0x80; // a bit as it enters a byte
+
+    // What changes from edge to edge. The chip has registers for it, as long as nobody has its address.
+    struct State {
+        uint8_t level = kHigh; // of the line since the last edge: kHigh or 0
+        uint8_t bit = kIdle;   // next to be sampled: 0 the start bit, 1..8 data, 9 the stop bit
+        uint8_t byte = 0;
+        uint16_t sample_at = 0; // the middle of that bit
+    };
+
+    static int16_t sample(State& state, uint16_t until, uint8_t bit_counts);
+    static int16_t change(State& state, uint16_t stamp, uint8_t bit_counts);
 
     uint8_t bit_counts_;
-    bool level_ = true;   // of the line since the last edge
-    uint8_t bit_ = kIdle; // next to be sampled: 0 the start bit, 1..8 data, 9 the stop bit
-    uint8_t byte_ = 0;
-    uint16_t sample_at_ = 0; // the middle of that bit
+    State state_;
 };
+
+// The level has stayed until then. Returns the byte that this completed, or kNoByte.
+inline __attribute__((always_inline)) int16_t EdgeReceiver::sample(State& state, uint16_t until,
+                                                                   uint8_t bit_counts) {
+    int16_t result = kNoByte;
+    int16_t since_sample = static_cast<int16_t>(until - state.sample_at);
+    while (state.bit != kIdle && since_sample >= 0) {
+        since_sample -= bit_counts;
+        if (state.bit == kStartBit) {
+            state.bit = state.level ? kIdle : kStartBit + 1; // high again so soon: a glitch, no start bit
+        } else if (state.bit < kStopBit) {
+            state.byte = static_cast<uint8_t>(state.byte >> 1 | state.level);
+            ++state.bit;
+        } else {
+            state.bit = kIdle;
+            result = state.level ? state.byte : kNoByte; // no stop bit: not a byte
+        }
+    }
+    state.sample_at = until - static_cast<uint16_t>(since_sample);
+    return result;
+}
+
+// The line has changed. Returns the byte that this completed, or kNoByte.
+inline __attribute__((always_inline)) int16_t EdgeReceiver::change(State& state, uint16_t stamp,
+                                                                   uint8_t bit_counts) {
+    const uint8_t before = state.level;
+    state.level = stamp & 1 ? kHigh : 0;
+    int16_t result = kNoByte;
+    if (state.bit == kStopBit && before && !state.level) {
+        // The next start bit, though half of the stop bit is still due: a fast sender, or a stamp that came
+        // late before one that came early. The line was high, which is all a stop bit has to say.
+        result = state.byte;
+        state.bit = kIdle;
+    }
+    // Even if it was low before: then the edge between was missed, and the line has fallen again.
+    if (state.bit == kIdle && !state.level) {
+        state.bit = kStartBit;
+        state.sample_at = stamp + bit_counts / 2;
+    }
+    return result;
+}
+
+template <typename Source>
+int16_t EdgeReceiver::receive(Source source, uint16_t now) {
+    State state = state_;
+    const uint8_t bit_counts = bit_counts_;
+    int16_t result;
+    uint16_t stamp;
+    do {
+        const bool changed = source(&stamp);
+        result = sample(state, changed ? stamp : now, bit_counts);
+        if (!changed) {
+            break;
+        }
+        const int16_t early = change(state, stamp, bit_counts);
+        result = early == kNoByte ? result : early;
+    } while (result == kNoByte);
+    state_ = state;
+    return result;
+}
+
+inline void EdgeReceiver::reset() {
+    state_ = State();
+}
 
 } // namespace tilenca

@@ -19,8 +19,8 @@ namespace {
 constexpr uint8_t kSouthBitCounts = 52;
 
 // A UART's edges are a bit apart at least. What comes this much faster on average, but for a few, is noise.
-constexpr uint8_t kFastestCounts = 32;
-constexpr uint8_t kFewEdges = 32;
+constexpr uint8_t kFastestCounts = 45;
+constexpr uint8_t kFewEdges = 24;
 // How long noise makes deaf: 20 ms. To fill the ring takes the interrupt less than one.
 constexpr uint16_t kRestCounts = 40000;
 
@@ -79,13 +79,17 @@ uint8_t edges_waiting() {
     return static_cast<uint8_t>(SOUTH_EDGE_HEAD - SOUTH_EDGE_TAIL);
 }
 
-uint16_t take_edge() {
+bool take_edge(uint16_t* stamp) {
     const uint8_t at = SOUTH_EDGE_TAIL;
+    if (at == SOUTH_EDGE_HEAD) {
+        return false;
+    }
     const uint16_t high = edge_highs.bytes[static_cast<uint8_t>(at + 1)];
     const uint8_t low = edge_lows.bytes[at] & 0xFE;
     const uint8_t level = edge_levels.bytes[at] >> kSouthRx.bit & 1;
+    *stamp = static_cast<uint16_t>(high << 8 | low | level);
     SOUTH_EDGE_TAIL = at + 1;
-    return static_cast<uint16_t>(high << 8 | low | level);
+    return true;
 }
 
 } // namespace
@@ -122,18 +126,16 @@ bool south_read(uint8_t* byte) {
         }
         return false;
     }
-    const bool noise = waiting > static_cast<uint16_t>(now - emptied_at) / kFastestCounts + kFewEdges;
+    const bool noise =
+        waiting > kFewEdges &&
+        static_cast<uint16_t>((waiting - kFewEdges) * kFastestCounts) > static_cast<uint16_t>(now - emptied_at);
     if (noise || !listening()) { // or the interrupt found no room and turned itself off
         lose_edges(now, noise);
         return false;
     }
-    int16_t result = EdgeReceiver::kNoByte;
-    while (result == EdgeReceiver::kNoByte && SOUTH_EDGE_TAIL != SOUTH_EDGE_HEAD) {
-        result = receiver.edge(take_edge());
-    }
+    const int16_t result = receiver.receive(take_edge, now);
     if (result == EdgeReceiver::kNoByte) {
         emptied_at = now;
-        result = receiver.poll(now);
     }
     *byte = static_cast<uint8_t>(result);
     return result != EdgeReceiver::kNoByte;

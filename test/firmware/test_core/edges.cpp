@@ -55,6 +55,25 @@ uint16_t count_at(double cycle) {
     return static_cast<uint16_t>(static_cast<uint64_t>(cycle) / 8);
 }
 
+uint16_t stamp_at(double cycle, bool level) {
+    return static_cast<uint16_t>((count_at(cycle) & ~1) | level);
+}
+
+// One more edge, and nothing known of the time after it.
+int16_t edge(EdgeReceiver& receiver, uint16_t stamp) {
+    bool given = false;
+    const auto once = [&](uint16_t* next) {
+        *next = stamp;
+        given = !given;
+        return given;
+    };
+    return receiver.receive(once, stamp);
+}
+
+int16_t poll(EdgeReceiver& receiver, uint16_t now) {
+    return receiver.receive([](uint16_t*) { return false; }, now);
+}
+
 // Receives a line as the board does: every so often the main loop comes by, takes what edges there are, and
 // polls.
 std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, double late_cycles = 0,
@@ -62,19 +81,21 @@ std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, d
     Numbers numbers(seed);
     EdgeReceiver receiver(52);
     std::vector<uint8_t> bytes;
-    const auto take = [&](int16_t result) {
-        if (result != EdgeReceiver::kNoByte) {
-            bytes.push_back(static_cast<uint8_t>(result));
-        }
-    };
     size_t next = 0;
     for (double now = 0; now < end_cycle + 4 * kByteCycles + loop_cycles; now += loop_cycles) {
-        while (next < edges.size() && edges[next].cycle <= now) {
-            const double stamped = edges[next].cycle + late_cycles * numbers.draw(0, 1000) / 1000;
-            take(receiver.edge(static_cast<uint16_t>((count_at(stamped) & ~1) | edges[next].level)));
+        const auto source = [&](uint16_t* stamp) {
+            if (next == edges.size() || edges[next].cycle > now) {
+                return false;
+            }
+            const double late = late_cycles * numbers.draw(0, 1000) / 1000;
+            *stamp = stamp_at(edges[next].cycle + late, edges[next].level);
             ++next;
+            return true;
+        };
+        int16_t byte;
+        while ((byte = receiver.receive(source, count_at(now))) != EdgeReceiver::kNoByte) {
+            bytes.push_back(static_cast<uint8_t>(byte));
         }
-        take(receiver.poll(count_at(now)));
     }
     return bytes;
 }
@@ -142,11 +163,11 @@ TEST_CASE("silence of any length, turns of the timer included, changes nothing")
 
 TEST_CASE("a byte whose end has no edge is complete as soon as its stop bit is half over") {
     EdgeReceiver receiver(52);
-    CHECK(receiver.edge(1000 & ~1) == EdgeReceiver::kNoByte); // start bit of 0xFF; the line rises after it
-    CHECK(receiver.edge((1052 & ~1) | 1) == EdgeReceiver::kNoByte);
-    CHECK(receiver.poll(1000 + 9 * 52) == EdgeReceiver::kNoByte);
-    CHECK(receiver.poll(1000 + 9 * 52 + 27) == 0xFF);
-    CHECK(receiver.poll(1000 + 20 * 52) == EdgeReceiver::kNoByte);
+    CHECK(edge(receiver, 1000 & ~1) == EdgeReceiver::kNoByte); // start bit of 0xFF; the line rises after it
+    CHECK(edge(receiver, (1052 & ~1) | 1) == EdgeReceiver::kNoByte);
+    CHECK(poll(receiver, 1000 + 9 * 52) == EdgeReceiver::kNoByte);
+    CHECK(poll(receiver, 1000 + 9 * 52 + 27) == 0xFF);
+    CHECK(poll(receiver, 1000 + 20 * 52) == EdgeReceiver::kNoByte);
 }
 
 TEST_CASE("after a missed edge the next byte behind a pause is right") {
@@ -225,18 +246,16 @@ TEST_CASE("after a reset in the middle of a byte the next one is right") {
         CAPTURE(heard);
         EdgeReceiver receiver(52);
         for (size_t i = 0; i < heard; ++i) {
-            receiver.edge(static_cast<uint16_t>((count_at(line.edges[i].cycle) & ~1) | line.edges[i].level));
+            edge(receiver, stamp_at(line.edges[i].cycle, line.edges[i].level));
         }
         receiver.reset();
-        CHECK(receiver.poll(count_at(line.cycle + kByteCycles)) == EdgeReceiver::kNoByte);
+        CHECK(poll(receiver, count_at(line.cycle + kByteCycles)) == EdgeReceiver::kNoByte);
         Line next(line.cycle + 2 * kByteCycles);
         next.send(0xC3);
-        int16_t byte = EdgeReceiver::kNoByte;
-        for (const Edge& edge : next.edges) {
-            byte = receiver.edge(static_cast<uint16_t>((count_at(edge.cycle) & ~1) | edge.level));
-            CHECK(byte == EdgeReceiver::kNoByte);
+        for (const Edge& change : next.edges) {
+            CHECK(edge(receiver, stamp_at(change.cycle, change.level)) == EdgeReceiver::kNoByte);
         }
-        CHECK(receiver.poll(count_at(next.cycle)) == 0xC3);
+        CHECK(poll(receiver, count_at(next.cycle)) == 0xC3);
     }
 }
 
