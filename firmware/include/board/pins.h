@@ -39,5 +39,8 @@ constexpr uint8_t kHostUsart = 0;
 // The receiving pin of each side, which floats while nobody is there: RXD2, RXD1, A14, RXD3.
 constexpr Pin kSideRx[4] = {{'H', 0}, {'D', 2}, kSouthRx, {'J', 0}};
 
+// The sending pin of each side: TXD2, TXD1, A15, TXD3.
+constexpr Pin kSideTx[4] = {{'H', 1}, {'D', 3}, kSouthTx, {'J', 1}};
+
 } // namespace board
 } // namespace tilenca

@@ -1,0 +1,18 @@
+// Lines of text to the host, from flash.
+#pragma once
+
+#include <avr/pgmspace.h>
+#include <stdint.h>
+
+#include "board/pins.h"
+
+namespace tilenca {
+
+// Waits for room: nothing else here is in a hurry.
+void say(char character);
+void say(PGM_P text);
+void say(board::Pin pin);       // PH4
+void say_number(uint8_t value); // decimal
+void say_end();                 // of the line
+
+} // namespace tilenca

@@ -1,0 +1,262 @@
+// Is the board in order? Each step lights something or listens to the sides; the button, or a letter from the
+// host, goes to the next. docs/BOARD_TEST.md says what to look for.
+#include <Arduino.h>
+
+#include "app/button.h"
+#include "board/chip.h"
+#include "board/face.h"
+#include "board/gpio.h"
+#include "board/links.h"
+#include "board/pins.h"
+#include "board/usart.h"
+#include "board_test/say.h"
+#include "board_test/side_check.h"
+
+using namespace tilenca;
+
+namespace {
+
+constexpr uint32_t kHostBaud = 115200;
+constexpr uint16_t kLampMs = 500;
+constexpr uint8_t kDuty = 60;
+
+enum class Step : uint8_t { Segments, Leds, Colours, Sides };
+constexpr uint8_t kSteps = 4;
+constexpr char kLetters[kSteps + 1] = "dlcs";
+
+// What the display shows meanwhile: a letter for the step, then the number of sides that are in order.
+constexpr uint8_t kGlyphL = 0x38;
+constexpr uint8_t kGlyphC = 0x39;
+constexpr uint8_t kDigits[kSides + 1] = {0x3F, 0x06, 0x5B, 0x4F, 0x66};
+
+Step step = Step::Segments;
+uint32_t lamp_since_ms = 0;
+uint8_t lamp = 0; // which of a step's lamps is lit
+Button button;
+SideCheck checks[kSides] = {SideCheck(Side::North), SideCheck(Side::East), SideCheck(Side::South),
+                            SideCheck(Side::West)};
+
+PGM_P text_of(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::Waiting:
+        return PSTR("wait");
+    case Verdict::Nothing:
+        return PSTR("FAIL, heard nothing: no plug, no tile, or a broken line to ");
+    case Verdict::Low:
+        return PSTR("FAIL, always low: a short, or a broken line to ");
+    case Verdict::LoopBack:
+        return PSTR("pass, loop-back");
+    case Verdict::Neighbour:
+        return PSTR("pass, a tile that hears this one, from its side ");
+    case Verdict::Unheard:
+        return PSTR("FAIL, a tile that does not hear this one: a broken line from ");
+    case Verdict::WrongSide:
+        return PSTR("FAIL, joined to side ");
+    case Verdict::Unreliable:
+        return PSTR("FAIL, packets lost: ");
+    }
+    return PSTR("");
+}
+
+void say_side(uint8_t i) {
+    const SideCheck& check = checks[i];
+    say(PSTR("side "));
+    say(kSideLetters[i]);
+    say(PSTR(": "));
+    say(text_of(check.verdict()));
+    switch (check.verdict()) {
+    case Verdict::Nothing:
+    case Verdict::Low:
+        say(board::kSideRx[i]);
+        break;
+    case Verdict::Unheard:
+        say(board::kSideTx[i]);
+        break;
+    case Verdict::Neighbour:
+    case Verdict::WrongSide:
+        say(kSideLetters[index_of(check.heard())]);
+        break;
+    case Verdict::Unreliable:
+        say_number(check.lost());
+        break;
+    case Verdict::Waiting:
+    case Verdict::LoopBack:
+        break;
+    }
+    say_end();
+}
+
+void say_help() {
+    say(PSTR("board test: press the button for the next step, or send d display, l LEDs, c colours, s sides, "
+             "b button, ? this"));
+    say_end();
+}
+
+void say_button() {
+    say(board::button_closed() ? PSTR("button: closed") : PSTR("button: open"));
+    say_end();
+}
+
+uint8_t lamps_of(Step which) {
+    switch (which) {
+    case Step::Segments:
+        return 8;
+    case Step::Leds:
+        return kSides;
+    case Step::Colours:
+        return 3;
+    case Step::Sides:
+        break;
+    }
+    return 0;
+}
+
+// Lights one lamp alone, and says which.
+void light() {
+    for (uint8_t i = 0; i < kSides; ++i) {
+        board::show_led(i, step == Step::Leds && i == lamp);
+    }
+    const bool colours = step == Step::Colours;
+    board::show_colour(colours && lamp == 0 ? kDuty : 0, colours && lamp == 1 ? kDuty : 0,
+                       colours && lamp == 2 ? kDuty : 0);
+    switch (step) {
+    case Step::Segments:
+        board::show_segments(static_cast<uint8_t>(1 << lamp));
+        say(PSTR("display: only segment "));
+        if (lamp == 7) {
+            say(PSTR("dp"));
+        } else {
+            say(static_cast<char>('a' + lamp));
+        }
+        say(' ');
+        say(board::kSegments[lamp]);
+        say_end();
+        break;
+    case Step::Leds:
+        board::show_segments(kGlyphL);
+        say(PSTR("LEDs: only LED "));
+        say_number(lamp + 1);
+        say(' ');
+        say(board::kDebugLeds[lamp]);
+        say_end();
+        break;
+    case Step::Colours:
+        board::show_segments(kGlyphC);
+        say(PSTR("colours: only "));
+        say(lamp == 0 ? PSTR("red ") : lamp == 1 ? PSTR("green ") : PSTR("blue "));
+        say(lamp == 0 ? board::kRed : lamp == 1 ? board::kGreen : board::kBlue);
+        say_end();
+        break;
+    case Step::Sides:
+        break;
+    }
+}
+
+void show_sides() {
+    uint8_t good = 0;
+    bool failed = false;
+    for (uint8_t i = 0; i < kSides; ++i) {
+        const Verdict verdict = checks[i].verdict();
+        board::show_led(i, is_good(verdict));
+        good += is_good(verdict);
+        failed |= !is_good(verdict) && verdict != Verdict::Waiting;
+    }
+    board::show_segments(kDigits[good]);
+    board::show_colour(failed ? kDuty : 0, good == kSides ? kDuty : 0, 0);
+}
+
+void begin_step(Step which, uint32_t now_ms) {
+    step = which;
+    lamp = 0;
+    lamp_since_ms = now_ms;
+    light();
+    if (step == Step::Sides) {
+        show_sides();
+        for (uint8_t i = 0; i < kSides; ++i) {
+            say_side(i);
+        }
+    }
+}
+
+void go_on(uint32_t now_ms) {
+    if (step != Step::Sides && now_ms - lamp_since_ms >= kLampMs) {
+        lamp_since_ms += kLampMs;
+        lamp = static_cast<uint8_t>((lamp + 1) % lamps_of(step));
+        light();
+    }
+}
+
+void obey(char letter, uint32_t now_ms) {
+    for (uint8_t i = 0; i < kSteps; ++i) {
+        if (letter == kLetters[i]) {
+            begin_step(static_cast<Step>(i), now_ms);
+        }
+    }
+    if (letter == 'b') {
+        say_button();
+    }
+    if (letter == '?') {
+        say_help();
+    }
+}
+
+void listen(uint32_t now_ms) {
+    for (uint8_t byte; board::usart_read(board::kHostUsart, &byte);) {
+        obey(static_cast<char>(byte), now_ms);
+    }
+    if (button.pressed(board::button_closed(), now_ms)) {
+        say(PSTR("button: pass, pressed"));
+        say_end();
+        begin_step(static_cast<Step>((static_cast<uint8_t>(step) + 1) % kSteps), now_ms);
+    }
+}
+
+// The sides are tested all the time, whatever is shown: a neighbour may be in another step.
+void check_sides(uint32_t now_ms) {
+    static uint32_t sent_ms = 0;
+    static uint32_t judged_ms = 0;
+    const bool send = now_ms - sent_ms >= SideCheck::kPacketMs;
+    const bool judge = now_ms - judged_ms >= SideCheck::kWindowMs;
+    sent_ms += send ? SideCheck::kPacketMs : 0;
+    judged_ms += judge ? SideCheck::kWindowMs : 0;
+    for (uint8_t i = 0; i < kSides; ++i) {
+        const Side side = side_at(i);
+        for (uint8_t byte; board::link_read(side, &byte);) {
+            checks[i].receive(byte);
+        }
+        checks[i].look(board::is_high(board::kSideRx[i]));
+        if (send && board::link_idle(side)) {
+            uint8_t packet[SideCheck::kPacketSize];
+            checks[i].write_packet(packet);
+            board::link_write(side, packet, sizeof packet);
+        }
+        if (judge && checks[i].judge() && step == Step::Sides) {
+            say_side(i);
+            show_sides();
+        }
+    }
+}
+
+} // namespace
+
+void setup() {
+    board::clock_begin();
+    board::links_begin();
+    board::face_begin();
+    board::usart_begin(board::kHostUsart, kHostBaud);
+    say_help();
+    if (board::button_closed()) {
+        say(PSTR("button: FAIL, closed without being pressed, unless somebody does "));
+        say(board::kButton);
+        say_end();
+    }
+    begin_step(Step::Segments, board::now_ms());
+}
+
+void loop() {
+    const uint32_t now_ms = board::now_ms();
+    listen(now_ms);
+    check_sides(now_ms);
+    go_on(now_ms);
+    board::sleep();
+}

@@ -1,0 +1,40 @@
+#include "board_test/say.h"
+
+#include "board/usart.h"
+
+namespace tilenca {
+
+void say(char character) {
+    const uint8_t byte = static_cast<uint8_t>(character);
+    while (!board::usart_write(board::kHostUsart, &byte, 1)) {
+    }
+}
+
+void say(PGM_P text) {
+    for (char character; (character = static_cast<char>(pgm_read_byte(text))) != '\0'; ++text) {
+        say(character);
+    }
+}
+
+void say(board::Pin pin) {
+    say('P');
+    say(pin.port);
+    say(static_cast<char>('0' + pin.bit));
+}
+
+void say_number(uint8_t value) {
+    if (value >= 100) {
+        say(static_cast<char>('0' + value / 100));
+    }
+    if (value >= 10) {
+        say(static_cast<char>('0' + value / 10 % 10));
+    }
+    say(static_cast<char>('0' + value % 10));
+}
+
+void say_end() {
+    say('\r');
+    say('\n');
+}
+
+} // namespace tilenca

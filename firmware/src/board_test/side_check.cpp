@@ -1,0 +1,79 @@
+#include "board_test/side_check.h"
+
+#include <string.h>
+
+#include "core/crc16.h"
+
+namespace tilenca {
+
+namespace {
+
+constexpr uint8_t kMark = 'T';
+constexpr uint8_t kHearsFlag = 0x10; // beside the side: the sender hears somebody there
+constexpr uint8_t kSideMask = 0x0F;
+constexpr uint8_t kChecked = SideCheck::kPacketSize - 2;
+
+} // namespace
+
+void SideCheck::write_packet(uint8_t (&packet)[kPacketSize]) {
+    const bool hears = received_ != 0 || hears_;
+    packet[0] = kMark;
+    packet[1] = static_cast<uint8_t>(index_of(side_) | (hears ? kHearsFlag : 0));
+    packet[2] = sequence_out_++;
+    packet[3] = 0x00; // the slowest byte, and the fastest
+    packet[4] = 0x55;
+    packet[5] = 0xFF;
+    const uint16_t crc = crc16(packet, kChecked);
+    packet[6] = static_cast<uint8_t>(crc);
+    packet[7] = static_cast<uint8_t>(crc >> 8);
+}
+
+void SideCheck::receive(uint8_t byte) {
+    memmove(window_, window_ + 1, kPacketSize - 1);
+    window_[kPacketSize - 1] = byte;
+    const uint16_t crc = static_cast<uint16_t>(window_[6] | static_cast<uint16_t>(window_[7]) << 8);
+    if (window_[0] == kMark && (window_[1] & kSideMask) < kSides && crc == crc16(window_, kChecked)) {
+        accept(window_[1], window_[2]);
+    }
+}
+
+void SideCheck::accept(uint8_t from, uint8_t sequence) {
+    if (in_sequence_) {
+        missed_ = static_cast<uint8_t>(missed_ + static_cast<uint8_t>(sequence - sequence_in_ - 1));
+    }
+    in_sequence_ = true;
+    sequence_in_ = sequence;
+    from_ = side_at(from & kSideMask);
+    heard_us_ = from & kHearsFlag;
+    ++received_;
+}
+
+Verdict SideCheck::found() const {
+    if (received_ == 0) {
+        return was_high_ ? Verdict::Nothing : Verdict::Low;
+    }
+    if (missed_ != 0) {
+        return Verdict::Unreliable;
+    }
+    if (from_ == side_) {
+        return Verdict::LoopBack;
+    }
+    if (from_ != opposite(side_)) {
+        return Verdict::WrongSide;
+    }
+    return heard_us_ ? Verdict::Neighbour : Verdict::Unheard;
+}
+
+bool SideCheck::judge() {
+    const Verdict before = verdict_;
+    verdict_ = found();
+    heard_ = from_;
+    lost_ = missed_;
+    hears_ = received_ != 0;
+    in_sequence_ = hears_; // after silence the next packet follows none
+    received_ = missed_ = 0;
+    was_high_ = false;
+    return verdict_ != before;
+}
+
+} // namespace tilenca
