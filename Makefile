@@ -53,7 +53,7 @@ lint: setup-check
 	@.venv/bin/ruff check
 	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
 	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator tools/training
-	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV)
+	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV) -e board_test
 
 types: setup-check
 	@.venv/bin/mypy
@@ -73,6 +73,7 @@ train: setup-train ## train a model of the digits into build/models/digits
 bench: setup-train ## print exact sizes of the firmware and the speed of emulation, simulation and training
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
+	@$(PYTHON) tools/bench_links.py $(ELF) --write docs/BENCHMARKS.md
 	@$(PYTHON) tools/bench_training.py
 	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
 

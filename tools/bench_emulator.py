@@ -126,13 +126,13 @@ def table(rows: Sequence[tuple[str, str, str]]) -> str:
     return "\n".join([*lines, *(f"| {what} | {figure} | {target} |" for what, figure, target in rows)])
 
 
-def written(text: str, section: str) -> str:
-    """The document with our section in its place, or at its end."""
-    ours = f"{BEGIN}\n\n{section}\n\n{END}"
-    before, begin, rest = text.partition(BEGIN)
-    if not begin:
+def written(text: str, section: str, begin: str = BEGIN, end: str = END) -> str:
+    """The document with a section in its place between its marks, or at its end."""
+    ours = f"{begin}\n\n{section}\n\n{end}"
+    before, found, rest = text.partition(begin)
+    if not found:
         return f"{text.rstrip()}\n\n{ours}\n" if text else f"# Benchmarks\n\n{ours}\n"
-    return before + ours + rest.partition(END)[2]
+    return before + ours + rest.partition(end)[2]
 
 
 def main() -> int:

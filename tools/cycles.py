@@ -52,6 +52,13 @@ def any_model(size: Dimensions) -> Model:
     return Model(tuple(GLYPHS)[:CLASSES], size, integer, floats)
 
 
+def environment(**options: Path) -> dict[str, str]:
+    """What PlatformIO is started with, so that it builds something else than platformio.ini says."""
+    variables = os.environ | {f"PLATFORMIO_{name}": str(value) for name, value in options.items()}
+    variables.pop("PLATFORMIO_CORE_DIR", None)
+    return variables
+
+
 def build(size: Dimensions, folder: Path) -> Path:
     """The firmware's ELF with a network of these widths, built in `folder`.
 
@@ -62,11 +69,9 @@ def build(size: Dimensions, folder: Path) -> Path:
     shutil.copytree(paths.FIRMWARE, firmware)
     export.write_files(firmware, export.render(any_model(size)), force=True)
     places = {"SRC_DIR": firmware / "src", "INCLUDE_DIR": firmware / "include", "BUILD_DIR": folder / "build"}
-    environment = os.environ | {f"PLATFORMIO_{name}": str(place) for name, place in places.items()}
-    environment.pop("PLATFORMIO_CORE_DIR", None)
     pio = str(Path(sys.executable).with_name("pio"))
     command = [pio, "run", "-s", "-d", str(paths.ROOT), "-e", paths.FIRMWARE_ENV]
-    subprocess.run(command, env=environment, check=True)
+    subprocess.run(command, env=environment(**places), check=True)
     return folder / "build" / paths.FIRMWARE_ENV / "firmware.elf"
 
 

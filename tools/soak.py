@@ -1,6 +1,6 @@
 """Twenty emulated tiles with all their neighbours, as fast as they go: what becomes of the frames.
 
-Neighbours' clocks are a whole percent apart, phases are random, every tile computes and says on USB what it does.
+Neighbours' clocks are a whole percent apart, phases are random, every tile computes and talks on USB.
 """
 
 import random

@@ -49,8 +49,8 @@ def lines(tile: EmulatedTile) -> list[str]:
 
 def sides(tile: EmulatedTile) -> dict[str, str]:
     """What was last said of each side."""
-    said = [line.removeprefix("side ").split(": ", 1) for line in lines(tile) if line.startswith("side ")]
-    return {side: result for side, result in said}
+    said = [line.removeprefix("side ").partition(": ") for line in lines(tile) if line.startswith("side ")]
+    return {side: result for side, _, result in said}
 
 
 def test_every_segment_led_and_colour_is_lit_alone_and_named(elf: Path) -> None:
@@ -110,7 +110,7 @@ def test_loop_back_plugs_make_all_sides_pass(elf: Path) -> None:
     plugs = [Plug(tile, side) for side in SIDES]
     tile.write_serial(b"s")
     run(array, 2.2, plugs)
-    assert sides(tile) == {side: "pass, loop-back" for side in "NESW"}
+    assert sides(tile) == dict.fromkeys("NESW", "pass, loop-back")
     assert tile.leds == (True,) * 4
     assert tile.segments == 0x66  # 4
     assert [duty > 0 for duty in tile.rgb] == [False, True, False]
@@ -125,7 +125,7 @@ def test_of_four_loop_back_plugs_the_broken_one_is_named(elf: Path, broken: int)
     run(array, 1.2, plugs)
     run(array, 1.2, [plug for plug in plugs if plug.side != broken])
     pin = "P{}{}".format(*tile.side_pin(broken, receiving=True))
-    expected = {side: "pass, loop-back" for side in "NESW"}
+    expected = dict.fromkeys("NESW", "pass, loop-back")
     expected["NESW"[broken]] = f"FAIL, heard nothing: no plug, no tile, or a broken line to {pin}"
     assert sides(tile) == expected
     assert tile.leds == tuple(side != broken for side in SIDES)
@@ -153,11 +153,12 @@ def test_two_tiles_test_each_other(elf: Path, side: int, other: int) -> None:
     run(array, 3.0)
     assert sides(array[0])["NESW"[side]] == PASS + "NESW"[other]
     assert sides(array[1])["NESW"[other]] == PASS + "NESW"[side]
-    # One of the two lines breaks: the one who still hears says that it is not heard, and on which pin it sends.
+    # One line breaks: who still hears says that it is not heard, and on which pin it sends.
     array.set_fault(0, side, LinkFault(loss=1.0, baud=38400))
     run(array, 1.5)
     pin = "P{}{}".format(*array[0].side_pin(side))
-    assert sides(array[0])["NESW"[side]] == f"FAIL, a tile that does not hear this one: a broken line from {pin}"
+    expected = f"FAIL, a tile that does not hear this one: a broken line from {pin}"
+    assert sides(array[0])["NESW"[side]] == expected
     assert sides(array[1])["NESW"[other]].startswith("FAIL, heard nothing")
     array.set_fault(0, side, LinkFault())
     run(array, 1.5)

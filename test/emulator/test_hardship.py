@@ -121,7 +121,9 @@ def test_garbage_on_all_lines_at_power_on_is_overcome() -> None:
     for tile, side, other, other_side in field.cables:
         field.array.set_fault(tile, side, LinkFault(flip=0.5), seed=1)
         field.array.set_fault(other, other_side, LinkFault(flip=0.5), seed=2)
-    for seed, (tile, side) in enumerate([(TOP, SOUTH), (BOTTOM, SOUTH), (MIDDLE, SOUTH), (TOP, NORTH), (0, WEST)]):
+    for seed, (tile, side) in enumerate(
+        [(TOP, SOUTH), (BOTTOM, SOUTH), (MIDDLE, SOUTH), (TOP, NORTH), (0, WEST)]
+    ):
         field.vandalise(tile, side, bursts(50_000, seed, 0.8, SECONDS + 1))
     field.run(0.8, range(20))
     for tile, side, other, other_side in field.cables:
@@ -147,8 +149,8 @@ def test_a_line_that_is_stuck_low_counts_as_silent() -> None:
         field.array[tile].hold_pin(*field.array[tile].side_pin(side, receiving=True), False)
     field.run(SECONDS / 2)
     assert not field.wrong
-    # And one between two tiles that talk: they lose each other, and no frame from anybody else. Whether what is
-    # left is an 8 is another question.
+    # And one between two tiles that talk: they lose each other, and no frame from anybody else. Whether
+    # what is left is an 8 is another question.
     field.array.unlink(0, SOUTH)
     field.array[0].hold_pin(*field.array[0].side_pin(SOUTH, receiving=True), False)
     field.array[4].hold_pin(*field.array[4].side_pin(NORTH, receiving=True), False)

@@ -1,4 +1,4 @@
-"""The links at their fastest: nothing is lost, whatever the clocks and phases; and what SoftwareSerial would do."""
+"""The links at their fastest: nothing is lost, whatever the clocks and phases."""
 
 from pathlib import Path
 

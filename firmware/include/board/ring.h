@@ -20,9 +20,7 @@ struct Ring {
     static constexpr uint8_t kWrap = kSize - 1;
 
     // The index after this one, in the same part of the page.
-    static uint8_t after(uint8_t at) {
-        return static_cast<uint8_t>((at & ~kWrap) | ((at + 1) & kWrap));
-    }
+    static uint8_t after(uint8_t at) { return static_cast<uint8_t>((at & ~kWrap) | ((at + 1) & kWrap)); }
 
     // Empties the queue, whose bytes begin there in the page. Only while its interrupt is off.
     void begin(uint8_t first) { head = tail = first; }

@@ -20,7 +20,9 @@ constexpr uint16_t kSouthBitCycles = 420;
 void south_begin();
 
 // The next byte received, if any. Call it at least every six milliseconds, or edges are lost.
-bool south_read(uint8_t* byte);
+//
+// Never inlined: in a larger function its state would not find registers, at twice the cycles.
+bool south_read(uint8_t* byte) __attribute__((noinline));
 
 // Starts sending a frame of at most kMaxFrame bytes; only when south_idle().
 void south_write(const uint8_t* bytes, uint8_t size);

@@ -8,12 +8,13 @@
 
 namespace tilenca {
 
+// `kBitCounts`: length of a bit in counts of the timer that stamps the edges.
+template <uint8_t kBitCounts>
 class EdgeReceiver {
+    static_assert(kBitCounts >= 8, "a bit has a middle");
+
   public:
     static constexpr int16_t kNoByte = -1;
-
-    // `bit_counts`: length of a bit in counts of the timer that stamps the edges, at least 8.
-    explicit EdgeReceiver(uint8_t bit_counts) : bit_counts_(bit_counts) {}
 
     // Takes edges from the source until a byte is complete, and returns it; or, when there are no more, what
     // is complete at the time `now`, if anything, or kNoByte. Call it at least four times per turn of the
@@ -25,7 +26,7 @@ class EdgeReceiver {
     int16_t receive(Source source, uint16_t now);
 
     // Forgets what it has heard: edges were lost, or the line is not to be believed.
-    void reset();
+    void reset() { state_ = State(); }
 
   private:
     static constexpr uint8_t kStartBit = 0;
@@ -41,20 +42,19 @@ class EdgeReceiver {
         uint16_t sample_at = 0; // the middle of that bit
     };
 
-    static int16_t sample(State& state, uint16_t until, uint8_t bit_counts);
-    static int16_t change(State& state, uint16_t stamp, uint8_t bit_counts);
+    static int16_t sample(State& state, uint16_t until);
+    static int16_t change(State& state, uint16_t stamp);
 
-    uint8_t bit_counts_;
     State state_;
 };
 
 // The level has stayed until then. Returns the byte that this completed, or kNoByte.
-inline __attribute__((always_inline)) int16_t EdgeReceiver::sample(State& state, uint16_t until,
-                                                                   uint8_t bit_counts) {
+template <uint8_t kBitCounts>
+inline int16_t EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
     int16_t result = kNoByte;
     int16_t since_sample = static_cast<int16_t>(until - state.sample_at);
     while (state.bit != kIdle && since_sample >= 0) {
-        since_sample -= bit_counts;
+        since_sample -= kBitCounts;
         if (state.bit == kStartBit) {
             state.bit = state.level ? kIdle : kStartBit + 1; // high again so soon: a glitch, no start bit
         } else if (state.bit < kStopBit) {
@@ -70,8 +70,8 @@ inline __attribute__((always_inline)) int16_t EdgeReceiver::sample(State& state,
 }
 
 // The line has changed. Returns the byte that this completed, or kNoByte.
-inline __attribute__((always_inline)) int16_t EdgeReceiver::change(State& state, uint16_t stamp,
-                                                                   uint8_t bit_counts) {
+template <uint8_t kBitCounts>
+inline int16_t EdgeReceiver<kBitCounts>::change(State& state, uint16_t stamp) {
     const uint8_t before = state.level;
     state.level = stamp & 1 ? kHigh : 0;
     int16_t result = kNoByte;
@@ -84,32 +84,28 @@ inline __attribute__((always_inline)) int16_t EdgeReceiver::change(State& state,
     // Even if it was low before: then the edge between was missed, and the line has fallen again.
     if (state.bit == kIdle && !state.level) {
         state.bit = kStartBit;
-        state.sample_at = stamp + bit_counts / 2;
+        state.sample_at = stamp + kBitCounts / 2;
     }
     return result;
 }
 
+template <uint8_t kBitCounts>
 template <typename Source>
-int16_t EdgeReceiver::receive(Source source, uint16_t now) {
+inline int16_t EdgeReceiver<kBitCounts>::receive(Source source, uint16_t now) {
     State state = state_;
-    const uint8_t bit_counts = bit_counts_;
     int16_t result;
     uint16_t stamp;
     do {
         const bool changed = source(&stamp);
-        result = sample(state, changed ? stamp : now, bit_counts);
+        result = sample(state, changed ? stamp : now);
         if (!changed) {
             break;
         }
-        const int16_t early = change(state, stamp, bit_counts);
+        const int16_t early = change(state, stamp);
         result = early == kNoByte ? result : early;
     } while (result == kNoByte);
     state_ = state;
     return result;
-}
-
-inline void EdgeReceiver::reset() {
-    state_ = State();
 }
 
 } // namespace tilenca

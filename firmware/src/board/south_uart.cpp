@@ -32,7 +32,8 @@ static_assert(kSouthTx.port == 'K' && kSouthTx.bit == 7, "the toggles below leav
 Page edge_lows;
 Page edge_highs;
 Page edge_levels;
-EdgeReceiver receiver(kSouthBitCounts);
+using Receiver = EdgeReceiver<kSouthBitCounts>;
+Receiver receiver;
 uint16_t emptied_at = 0; // when the ring was last found empty
 uint16_t rests_since = 0;
 uint16_t overruns = 0;
@@ -45,7 +46,9 @@ volatile uint8_t toggles_at = 0; // the low byte of the next one's address
 // The 16-bit read goes through a register that the interrupt uses too.
 uint16_t timer5_count() {
     uint16_t count;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { count = TCNT5; }
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        count = TCNT5;
+    }
     return count;
 }
 
@@ -126,19 +129,18 @@ bool south_read(uint8_t* byte) {
         }
         return false;
     }
-    const bool noise =
-        waiting > kFewEdges &&
-        static_cast<uint16_t>((waiting - kFewEdges) * kFastestCounts) > static_cast<uint16_t>(now - emptied_at);
+    const bool noise = waiting > kFewEdges && static_cast<uint16_t>((waiting - kFewEdges) * kFastestCounts) >
+                                                  static_cast<uint16_t>(now - emptied_at);
     if (noise || !listening()) { // or the interrupt found no room and turned itself off
         lose_edges(now, noise);
         return false;
     }
     const int16_t result = receiver.receive(take_edge, now);
-    if (result == EdgeReceiver::kNoByte) {
+    if (result == Receiver::kNoByte) {
         emptied_at = now;
     }
     *byte = static_cast<uint8_t>(result);
-    return result != EdgeReceiver::kNoByte;
+    return result != Receiver::kNoByte;
 }
 
 void south_write(const uint8_t* bytes, uint8_t size) {
@@ -201,37 +203,37 @@ ISR(TIMER1_COMPB_vect, ISR_NAKED) {
 
 // Stores timer 5's count and port K's levels. Not a flag is touched: none has to be saved.
 ISR(PCINT2_vect, ISR_NAKED) {
-    __asm__ volatile("out %[r24], r24 \n\t"
-                     "out %[r30], r30 \n\t"
-                     "out %[r31], r31 \n\t"
-                     "lds r24, %[count] \n\t" // the low byte first: it latches the high one
-                     "in r30, %[head] \n\t"
-                     "ldi r31, hi8(%[lows]) \n\t"
-                     "st Z, r24 \n\t"
-                     "lds r24, %[pins] \n\t"
-                     "ldi r31, hi8(%[levels]) \n\t"
-                     "st Z+, r24 \n\t"
-                     "lds r24, %[count] + 1 \n\t"
-                     "ldi r31, hi8(%[highs]) \n\t"
-                     "st Z, r24 \n\t"
-                     "in r24, %[tail] \n\t"
-                     "cpse r30, r24 \n\t"
-                     "rjmp 1f \n\t"
-                     "ldi r24, 0 \n\t"
-                     "sts %[control], r24 \n\t" // no room: no more interrupts
-                     "rjmp 2f \n\t"
-                     "1: out %[head], r30 \n\t"
-                     "2: in r31, %[r31] \n\t"
-                     "in r30, %[r30] \n\t"
-                     "in r24, %[r24] \n\t"
-                     "reti \n\t"
-                     :
-                     : [r24] "I"(_SFR_IO_ADDR(SCRATCH_R24)), [r30] "I"(_SFR_IO_ADDR(SCRATCH_R30)),
-                       [r31] "I"(_SFR_IO_ADDR(SCRATCH_R31)), [count] "n"(_SFR_MEM_ADDR(TCNT5)),
-                       [pins] "n"(_SFR_MEM_ADDR(PINK)), [control] "n"(_SFR_MEM_ADDR(PCICR)),
-                       [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)), [tail] "I"(_SFR_IO_ADDR(SOUTH_EDGE_TAIL)),
-                       [lows] "i"(edge_lows.bytes), [highs] "i"(edge_highs.bytes),
-                       [levels] "i"(edge_levels.bytes));
+    __asm__ volatile(
+        "out %[r24], r24 \n\t"
+        "out %[r30], r30 \n\t"
+        "out %[r31], r31 \n\t"
+        "lds r24, %[count] \n\t" // the low byte first: it latches the high one
+        "in r30, %[head] \n\t"
+        "ldi r31, hi8(%[lows]) \n\t"
+        "st Z, r24 \n\t"
+        "lds r24, %[pins] \n\t"
+        "ldi r31, hi8(%[levels]) \n\t"
+        "st Z+, r24 \n\t"
+        "lds r24, %[count] + 1 \n\t"
+        "ldi r31, hi8(%[highs]) \n\t"
+        "st Z, r24 \n\t"
+        "in r24, %[tail] \n\t"
+        "cpse r30, r24 \n\t"
+        "rjmp 1f \n\t"
+        "ldi r24, 0 \n\t"
+        "sts %[control], r24 \n\t" // no room: no more interrupts
+        "rjmp 2f \n\t"
+        "1: out %[head], r30 \n\t"
+        "2: in r31, %[r31] \n\t"
+        "in r30, %[r30] \n\t"
+        "in r24, %[r24] \n\t"
+        "reti \n\t"
+        :
+        : [r24] "I"(_SFR_IO_ADDR(SCRATCH_R24)), [r30] "I"(_SFR_IO_ADDR(SCRATCH_R30)),
+          [r31] "I"(_SFR_IO_ADDR(SCRATCH_R31)), [count] "n"(_SFR_MEM_ADDR(TCNT5)),
+          [pins] "n"(_SFR_MEM_ADDR(PINK)), [control] "n"(_SFR_MEM_ADDR(PCICR)),
+          [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)), [tail] "I"(_SFR_IO_ADDR(SOUTH_EDGE_TAIL)),
+          [lows] "i"(edge_lows.bytes), [highs] "i"(edge_highs.bytes), [levels] "i"(edge_levels.bytes));
 }
 
 } // namespace board

@@ -73,7 +73,9 @@ bool usart_read(uint8_t number, uint8_t* byte) {
 
 uint16_t usart_overruns(uint8_t number) {
     uint16_t count;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { count = overruns[number]; }
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        count = overruns[number];
+    }
     return count;
 }
 

@@ -9,6 +9,7 @@
 #include "board/links.h"
 #include "board/pins.h"
 #include "board/usart.h"
+#include "board_test/lamps.h"
 #include "board_test/say.h"
 #include "board_test/side_check.h"
 
@@ -18,15 +19,9 @@ namespace {
 
 constexpr uint32_t kHostBaud = 115200;
 constexpr uint16_t kLampMs = 500;
-constexpr uint8_t kDuty = 60;
-
-enum class Step : uint8_t { Segments, Leds, Colours, Sides };
-constexpr uint8_t kSteps = 4;
 constexpr char kLetters[kSteps + 1] = "dlcs";
 
-// What the display shows meanwhile: a letter for the step, then the number of sides that are in order.
-constexpr uint8_t kGlyphL = 0x38;
-constexpr uint8_t kGlyphC = 0x39;
+// What the display shows of the sides: how many are in order.
 constexpr uint8_t kDigits[kSides + 1] = {0x3F, 0x06, 0x5B, 0x4F, 0x66};
 
 Step step = Step::Segments;
@@ -97,61 +92,6 @@ void say_button() {
     say_end();
 }
 
-uint8_t lamps_of(Step which) {
-    switch (which) {
-    case Step::Segments:
-        return 8;
-    case Step::Leds:
-        return kSides;
-    case Step::Colours:
-        return 3;
-    case Step::Sides:
-        break;
-    }
-    return 0;
-}
-
-// Lights one lamp alone, and says which.
-void light() {
-    for (uint8_t i = 0; i < kSides; ++i) {
-        board::show_led(i, step == Step::Leds && i == lamp);
-    }
-    const bool colours = step == Step::Colours;
-    board::show_colour(colours && lamp == 0 ? kDuty : 0, colours && lamp == 1 ? kDuty : 0,
-                       colours && lamp == 2 ? kDuty : 0);
-    switch (step) {
-    case Step::Segments:
-        board::show_segments(static_cast<uint8_t>(1 << lamp));
-        say(PSTR("display: only segment "));
-        if (lamp == 7) {
-            say(PSTR("dp"));
-        } else {
-            say(static_cast<char>('a' + lamp));
-        }
-        say(' ');
-        say(board::kSegments[lamp]);
-        say_end();
-        break;
-    case Step::Leds:
-        board::show_segments(kGlyphL);
-        say(PSTR("LEDs: only LED "));
-        say_number(lamp + 1);
-        say(' ');
-        say(board::kDebugLeds[lamp]);
-        say_end();
-        break;
-    case Step::Colours:
-        board::show_segments(kGlyphC);
-        say(PSTR("colours: only "));
-        say(lamp == 0 ? PSTR("red ") : lamp == 1 ? PSTR("green ") : PSTR("blue "));
-        say(lamp == 0 ? board::kRed : lamp == 1 ? board::kGreen : board::kBlue);
-        say_end();
-        break;
-    case Step::Sides:
-        break;
-    }
-}
-
 void show_sides() {
     uint8_t good = 0;
     bool failed = false;
@@ -169,7 +109,7 @@ void begin_step(Step which, uint32_t now_ms) {
     step = which;
     lamp = 0;
     lamp_since_ms = now_ms;
-    light();
+    light(step, lamp);
     if (step == Step::Sides) {
         show_sides();
         for (uint8_t i = 0; i < kSides; ++i) {
@@ -182,7 +122,7 @@ void go_on(uint32_t now_ms) {
     if (step != Step::Sides && now_ms - lamp_since_ms >= kLampMs) {
         lamp_since_ms += kLampMs;
         lamp = static_cast<uint8_t>((lamp + 1) % lamps_of(step));
-        light();
+        light(step, lamp);
     }
 }
 

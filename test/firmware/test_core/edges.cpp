@@ -12,6 +12,8 @@ using test::Numbers;
 
 namespace {
 
+using Receiver = EdgeReceiver<52>;
+
 constexpr double kBitCycles = 16e6 / 38400;
 constexpr double kByteCycles = 10 * kBitCycles;
 
@@ -60,7 +62,7 @@ uint16_t stamp_at(double cycle, bool level) {
 }
 
 // One more edge, and nothing known of the time after it.
-int16_t edge(EdgeReceiver& receiver, uint16_t stamp) {
+int16_t edge(Receiver& receiver, uint16_t stamp) {
     bool given = false;
     const auto once = [&](uint16_t* next) {
         *next = stamp;
@@ -70,7 +72,7 @@ int16_t edge(EdgeReceiver& receiver, uint16_t stamp) {
     return receiver.receive(once, stamp);
 }
 
-int16_t poll(EdgeReceiver& receiver, uint16_t now) {
+int16_t poll(Receiver& receiver, uint16_t now) {
     return receiver.receive([](uint16_t*) { return false; }, now);
 }
 
@@ -79,7 +81,7 @@ int16_t poll(EdgeReceiver& receiver, uint16_t now) {
 std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, double late_cycles = 0,
                              double loop_cycles = 16000, uint32_t seed = 1) {
     Numbers numbers(seed);
-    EdgeReceiver receiver(52);
+    Receiver receiver;
     std::vector<uint8_t> bytes;
     size_t next = 0;
     for (double now = 0; now < end_cycle + 4 * kByteCycles + loop_cycles; now += loop_cycles) {
@@ -93,7 +95,7 @@ std::vector<uint8_t> receive(const std::vector<Edge>& edges, double end_cycle, d
             return true;
         };
         int16_t byte;
-        while ((byte = receiver.receive(source, count_at(now))) != EdgeReceiver::kNoByte) {
+        while ((byte = receiver.receive(source, count_at(now))) != Receiver::kNoByte) {
             bytes.push_back(static_cast<uint8_t>(byte));
         }
     }
@@ -162,12 +164,12 @@ TEST_CASE("silence of any length, turns of the timer included, changes nothing")
 }
 
 TEST_CASE("a byte whose end has no edge is complete as soon as its stop bit is half over") {
-    EdgeReceiver receiver(52);
-    CHECK(edge(receiver, 1000 & ~1) == EdgeReceiver::kNoByte); // start bit of 0xFF; the line rises after it
-    CHECK(edge(receiver, (1052 & ~1) | 1) == EdgeReceiver::kNoByte);
-    CHECK(poll(receiver, 1000 + 9 * 52) == EdgeReceiver::kNoByte);
+    Receiver receiver;
+    CHECK(edge(receiver, 1000 & ~1) == Receiver::kNoByte); // start bit of 0xFF; the line rises after it
+    CHECK(edge(receiver, (1052 & ~1) | 1) == Receiver::kNoByte);
+    CHECK(poll(receiver, 1000 + 9 * 52) == Receiver::kNoByte);
     CHECK(poll(receiver, 1000 + 9 * 52 + 27) == 0xFF);
-    CHECK(poll(receiver, 1000 + 20 * 52) == EdgeReceiver::kNoByte);
+    CHECK(poll(receiver, 1000 + 20 * 52) == Receiver::kNoByte);
 }
 
 TEST_CASE("after a missed edge the next byte behind a pause is right") {
@@ -244,16 +246,16 @@ TEST_CASE("after a reset in the middle of a byte the next one is right") {
     line.send(0x35);
     for (size_t heard = 0; heard <= line.edges.size(); ++heard) {
         CAPTURE(heard);
-        EdgeReceiver receiver(52);
+        Receiver receiver;
         for (size_t i = 0; i < heard; ++i) {
             edge(receiver, stamp_at(line.edges[i].cycle, line.edges[i].level));
         }
         receiver.reset();
-        CHECK(poll(receiver, count_at(line.cycle + kByteCycles)) == EdgeReceiver::kNoByte);
+        CHECK(poll(receiver, count_at(line.cycle + kByteCycles)) == Receiver::kNoByte);
         Line next(line.cycle + 2 * kByteCycles);
         next.send(0xC3);
         for (const Edge& change : next.edges) {
-            CHECK(edge(receiver, stamp_at(change.cycle, change.level)) == EdgeReceiver::kNoByte);
+            CHECK(edge(receiver, stamp_at(change.cycle, change.level)) == Receiver::kNoByte);
         }
         CHECK(poll(receiver, count_at(next.cycle)) == 0xC3);
     }

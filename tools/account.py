@@ -1,0 +1,216 @@
+"""Where a tile's cycles go: sampled on the emulated chip, and told apart by their source files.
+
+An image with line numbers is built beside the real one, and is the same to the byte. Interrupts are measured
+one by one, from their entry to the end of their return.
+"""
+
+import re
+import subprocess
+import sys
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+import cycles
+from tilenca import paths
+from tilenca.emulation import cables
+from tilenca.emulator import Array
+from tilenca.protocol import SIDE_LETTERS, settings_block
+from tilenca.shapes import Shape
+
+CROSS = Shape("X", (".#.", "###", ".#."), "X")
+MIDDLE = 2
+PPM = (900.0, -900.0, 333.0, 500.0, -500.0)
+START_S = 1.0
+SAMPLE_S = 16e-6  # the shortest time an array runs
+FOLDER = paths.BUILD / "account"
+EXTRA_SCRIPT = paths.ROOT / "tools" / "links" / "debug_info.py"
+
+# Cycles before an interrupt's first instruction: its entry and the jump there. And those of its return.
+ENTRY, RETURN = 5 + 3, 5
+CLOCK_HZ = 16e6
+INSTRUCTION = 2  # bytes of a short one
+
+INTERRUPTS = {
+    11: "south: an edge is stamped", 18: "south: a bit leaves",
+    25: "USB: a byte comes", 26: "USB: a byte leaves",
+    36: "east: a byte comes", 37: "east: a byte leaves", 42: "the millisecond", 51: "north: a byte comes",
+    52: "north: a byte leaves", 54: "west: a byte comes", 55: "west: a byte leaves",
+}  # fmt: skip
+
+# What a source file's instructions are for; what is in none of these is the main loop.
+PARTS = {
+    "the network": ("arithmetic", "network", "cell", "flash", "kernel", "perceptron", "model"),
+    "frames: COBS, CRC, counters": ("frame", "link", "crc16"),
+    "links: queues": ("usart", "ring", "links"),
+    "south: edges to bytes, bytes to toggles": ("south_uart", "edge_receiver", "toggles"),
+    "telemetry and commands": ("telemetry", "sentence", "command", "commands", "settings"),
+}
+LOOP = "main loop, display, button, clock"
+ASLEEP, INTERRUPTED = "asleep", "interrupts"
+
+
+@dataclass(frozen=True)
+class Interrupt:
+    """How long one interrupt takes, in cycles, and how often it comes."""
+
+    name: str
+    per_s: float
+    mean: float
+    longest: int
+
+    @property
+    def share(self) -> float:
+        """Part of all time."""
+        return self.per_s * self.mean / CLOCK_HZ
+
+
+@dataclass(frozen=True)
+class Account:
+    """What a second of a tile's time goes into.
+
+    Attributes:
+        period_ms: of the updates.
+        shares: part of the time by what it is for, adding up to 1.
+        neighbours: part of the time that hearing a neighbour takes, by its side.
+        interrupts: each of those that came.
+    """
+
+    period_ms: int
+    shares: dict[str, float]
+    neighbours: dict[str, float]
+    interrupts: list[Interrupt]
+
+
+def build() -> Path:
+    """The firmware with line numbers.
+
+    Raises:
+        CalledProcessError: it does not build.
+    """
+    pio = str(Path(sys.executable).with_name("pio"))
+    command = [pio, "run", "-s", "-d", str(paths.ROOT), "-e", paths.FIRMWARE_ENV]
+    environment = cycles.environment(BUILD_DIR=FOLDER, EXTRA_SCRIPTS=EXTRA_SCRIPT)
+    subprocess.run(command, env=environment, check=True)
+    return FOLDER / paths.FIRMWARE_ENV / "firmware.elf"
+
+
+def running(elf: Path, period_ms: int) -> Array:
+    """Five tiles in a cross, past their start; the one in the middle has four neighbours."""
+    array = Array(elf, len(CROSS.cells), cables(CROSS), PPM)
+    for tile in array:
+        tile.write_eeprom(0, settings_block(tile.index + 1, period_ms, 0))
+    array.run(START_S)
+    return array
+
+
+def interrupts(elf: Path, period_ms: int, seconds: float) -> list[Interrupt]:
+    """Measures all interrupts of the tile in the middle."""
+    vectors, returns = _handlers(elf)
+    spent: dict[int, list[int]] = defaultdict(list)
+    with running(elf, period_ms) as array:
+        tile = array[MIDDLE]
+        for address in (*vectors, *returns):
+            tile.mark(address)
+        end_s, began = array.time_s + seconds, (0, 0)
+        while array.time_s < end_s:
+            array.run(0.02)
+            for mark in tile.marks():
+                if mark.address in vectors:
+                    began = vectors[mark.address], mark.cycle
+                elif began[0]:
+                    spent[began[0]].append(ENTRY + mark.cycle - began[1] + RETURN)
+                    began = 0, 0
+    return [
+        Interrupt(
+            INTERRUPTS.get(vector, f"vector {vector}"),
+            len(times) / seconds,
+            sum(times) / len(times),
+            max(times),
+        )
+        for vector, times in sorted(spent.items())
+    ]
+
+
+def _listing(elf: Path) -> str:
+    return subprocess.run(["avr-objdump", "-d", str(elf)], capture_output=True, check=True, text=True).stdout
+
+
+def _instructions(elf: Path) -> list[tuple[str, int]]:
+    """The name and the address of each."""
+    found = re.findall(r"^\s*(\w+):\t[^\t]*\t(\w+)", _listing(elf), re.MULTILINE)
+    return [(name, int(address, 16)) for address, name in found]
+
+
+def _handlers(elf: Path) -> tuple[dict[int, int], set[int]]:
+    """Address and vector number of each interrupt's first instruction, and the addresses of all returns."""
+    starts = re.findall(r"^(\w+) <__vector_(\d+)>:", _listing(elf), re.MULTILINE)
+    returns = {address for name, address in _instructions(elf) if name == "reti"}
+    return {int(address, 16): int(number) for address, number in starts}, returns
+
+
+def part_of(function: str, place: str) -> str:
+    """What an instruction is for, by its function and `file:line`."""
+    if function.startswith("__vector"):
+        return INTERRUPTED
+    stem = Path(place.rsplit(":", 1)[0]).stem
+    for part, stems in PARTS.items():
+        if stem in stems:
+            return part
+    return LOOP
+
+
+def shares(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
+    """Samples what the tile in the middle does; sleep is counted, not sampled."""
+    beds = {at for name, at in _instructions(elf) if name == "sleep"}
+    seen: Counter[int] = Counter()
+    with running(elf, period_ms) as array:
+        tile = array[MIDDLE]
+        before, slept_before = tile.cycles
+        end_s = array.time_s + seconds
+        while array.time_s < end_s:
+            array.run(SAMPLE_S)
+            seen[tile.pc] += 1
+        after, slept_after = tile.cycles
+    asleep = (slept_after - slept_before) / (after - before)
+    awake = {address: count for address, count in seen.items() if address - INSTRUCTION not in beds}
+    command = ["avr-addr2line", "-f", "-e", str(elf), *map(hex, awake)]
+    told = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
+    found: Counter[str] = Counter()
+    for count, function, place in zip(awake.values(), told[::2], told[1::2], strict=True):
+        found[part_of(function, place)] += count
+    total = sum(found.values())
+    return {ASLEEP: asleep} | {part: (1 - asleep) * count / total for part, count in found.most_common()}
+
+
+def neighbours(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
+    """The share of its time that a tile spends on hearing a neighbour, by the side."""
+    awake = {}
+    for links in ([], *([(0, side, 1, (side + 2) % len(SIDE_LETTERS))] for side in range(len(SIDE_LETTERS)))):
+        with Array(elf, 2, links, PPM[:2]) as array:
+            for tile in array:
+                tile.write_eeprom(0, settings_block(tile.index + 1, period_ms, 0))
+            array.run(START_S)
+            before, slept_before = array[0].cycles
+            array.run(seconds)
+            after, slept_after = array[0].cycles
+        awake[SIDE_LETTERS[links[0][1]] if links else ""] = 1 - (slept_after - slept_before) / (
+            after - before
+        )
+    alone = awake.pop("")
+    return {side: share - alone for side, share in awake.items()}
+
+
+def account(period_ms: int, seconds: float) -> Account:
+    """Builds, runs and measures.
+
+    Raises:
+        CalledProcessError, TilencaError: the firmware cannot be built or run.
+    """
+    elf = build()
+    return Account(
+        period_ms,
+        shares(elf, period_ms, seconds),
+        neighbours(elf, period_ms, seconds),
+        interrupts(elf, period_ms, seconds),
+    )
