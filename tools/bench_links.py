@@ -114,9 +114,9 @@ def links_table(seconds: float, pair_seconds: float) -> list[str]:
         "|---|---|---|---|",
         *rows,
         "",
-        f"Twenty tiles in a block, hidden layers of {soak.SMALL.hidden1} and {soak.SMALL.hidden2}, neighbours'"
-        f" clocks 1 % apart, {soaked.restarts} restarts in {soaked.seconds:.0f} s. SoftwareSerial: two boards, "
-        f"the same frames in both directions, {pair_seconds:.0f} s.",
+        f"Twenty tiles in a block, hidden layers of {soak.SMALL.hidden1} and {soak.SMALL.hidden2}, clocks of "
+        f"neighbours 1 % apart, {soaked.restarts} restarts in {soaked.seconds:.0f} s. SoftwareSerial: two "
+        f"boards, the same frames in both directions, {pair_seconds:.0f} s.",
     ]
 
 

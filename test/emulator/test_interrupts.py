@@ -95,6 +95,20 @@ def test_pin_change_interrupts_come_on_every_bank(avr: Compile) -> None:
     assert tile.read_memory(0x1000, 3) == bytes([3, 4, 5])
 
 
+def test_an_edge_that_is_due_where_the_array_stops_is_not_forgotten(avr: Compile) -> None:
+    source = """
+    ISR(PCINT2_vect) { result[0]++; }
+    int main(void) { result[0] = 0; PCICR = 4; PCMSK2 = 0x40; sei(); for (;;) { } }"""
+    array = Array(avr(source))
+    array.run(0.001)
+    tile, step_s = array[0], 160e-6
+    for edges in range(1, 41):
+        tile.push_edge("K", 6, round((array.time_s + step_s) * 16e6) - edges % 4, edges % 2 == 0)
+        array.run(step_s)
+    array.run(step_s)
+    assert tile.read_memory(0x1000, 1) == bytes([40])
+
+
 @pytest.mark.parametrize(("sense", "falls", "rises"), [(1, 1, 1), (2, 1, 0), (3, 0, 1)])
 def test_external_interrupts_know_their_edge(avr: Compile, sense: int, falls: int, rises: int) -> None:
     source = f"""

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from tilenca.emulator import EmulatedTile
 
 CLOCK_HZ = 16e6
-# Edges are handed over this long before they are due.
+# Edges are handed over this long before they are due. An array runs in steps of 16 us, a bit longer than
+# asked.
 AHEAD_S = 0.001
+STEP_S = 16e-6
 
 # Seconds of the array's time, and the new level.
 Edges = Iterator[tuple[float, bool]]
@@ -65,7 +67,7 @@ class Vandal:
         push, rate = self._tile.push_edge, self._cycles_per_s
         while self._next is not None and self._next[0] < until_s + AHEAD_S:
             time_s, level = self._next
-            if time_s >= now_s + AHEAD_S:
+            if time_s >= now_s + AHEAD_S - 2 * STEP_S:
                 push(port, bit, round(time_s * rate), level)
             self._next = next(self._edges, None)
 

@@ -20,7 +20,7 @@ constexpr uint8_t kSouthBitCounts = 52;
 
 // A UART's edges are a bit apart at least. What comes this much faster on average, but for a few, is noise.
 constexpr uint8_t kFastestCounts = 45;
-constexpr uint8_t kFewEdges = 24;
+constexpr uint16_t kFewEdgesCounts = 24 * kFastestCounts;
 // How long noise makes deaf: 20 ms. To fill the ring takes the interrupt less than one.
 constexpr uint16_t kRestCounts = 40000;
 
@@ -34,7 +34,9 @@ Page edge_highs;
 Page edge_levels;
 using Receiver = EdgeReceiver<kSouthBitCounts>;
 Receiver receiver;
-uint16_t emptied_at = 0; // when the ring was last found empty
+uint16_t looked_at = 0;  // when the ring was last looked at
+uint8_t looked_head = 0; // and its head then
+uint16_t haste = 0;      // by how many counts the edges are ahead of what a UART can do
 uint16_t rests_since = 0;
 uint16_t overruns = 0;
 
@@ -60,7 +62,9 @@ void listen(uint16_t now) {
     SOUTH_EDGE_HEAD = 0;
     SOUTH_EDGE_TAIL = 0;
     receiver.reset();
-    emptied_at = now;
+    looked_at = now;
+    looked_head = 0;
+    haste = 0;
     PCIFR = 1 << PCIF2;
     PCICR = 1 << PCIE2;
 }
@@ -80,6 +84,17 @@ void lose_edges(uint16_t now, bool noise) {
 
 uint8_t edges_waiting() {
     return static_cast<uint8_t>(SOUTH_EDGE_HEAD - SOUTH_EDGE_TAIL);
+}
+
+// Whether edges come faster than a UART's.
+bool is_noise(uint16_t now) {
+    const uint8_t head = SOUTH_EDGE_HEAD;
+    haste += static_cast<uint8_t>(head - looked_head) * kFastestCounts;
+    const uint16_t passed = now - looked_at;
+    haste = haste > passed ? haste - passed : 0;
+    looked_head = head;
+    looked_at = now;
+    return haste > kFewEdgesCounts;
 }
 
 bool take_edge(uint16_t* stamp) {
@@ -122,23 +137,18 @@ void south_begin() {
 bool south_read(uint8_t* byte) {
     // `now` before the ring: an edge that comes in between is then taken before its time, which does no harm.
     const uint16_t now = timer5_count();
-    const uint8_t waiting = edges_waiting();
-    if (!listening() && waiting == 0) {
+    if (!listening() && edges_waiting() == 0) {
         if (static_cast<uint16_t>(now - rests_since) >= kRestCounts) {
             listen(now);
         }
         return false;
     }
-    const bool noise = waiting > kFewEdges && static_cast<uint16_t>((waiting - kFewEdges) * kFastestCounts) >
-                                                  static_cast<uint16_t>(now - emptied_at);
+    const bool noise = is_noise(now);
     if (noise || !listening()) { // or the interrupt found no room and turned itself off
         lose_edges(now, noise);
         return false;
     }
     const int16_t result = receiver.receive(take_edge, now);
-    if (result == Receiver::kNoByte) {
-        emptied_at = now;
-    }
     *byte = static_cast<uint8_t>(result);
     return result != Receiver::kNoByte;
 }

@@ -15,7 +15,8 @@ Line& Gpio::attach_line(PinId pin) {
 
 void Gpio::line_changed(PinId pin) {
     Port& port = ports_[pin.port];
-    if ((port.watched_in & pin.mask()) != 0) {
+    // An edge that is due and not served yet, since the array stopped just there, stays due.
+    if ((port.watched_in & pin.mask()) != 0 && core_.schedule.due(Slot::Lines) > core_.cpu.cycle) {
         schedule_lines(core_.cpu.cycle);
     }
 }
