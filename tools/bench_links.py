@@ -13,7 +13,7 @@ from pathlib import Path
 import account
 import cycles
 import soak
-from bench_emulator import written
+from bench_emulator import put
 from tilenca import paths
 from tilenca.emulation import firmware_settings
 from tilenca.emulator import NORTH, SOUTH, Array
@@ -155,8 +155,7 @@ def main() -> int:
     )
     print(section)
     if args.write is not None:
-        text = args.write.read_text(encoding="utf-8") if args.write.exists() else ""
-        args.write.write_text(written(text, section, BEGIN, END), encoding="utf-8")
+        put(args.write, BEGIN, END, section)
     return 0
 
 

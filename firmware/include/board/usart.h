@@ -16,6 +16,9 @@ bool usart_read(uint8_t number, uint8_t* byte);
 // Queues all of the bytes or, if there is no room for all, none.
 bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 
+// How many bytes can be queued now.
+uint8_t usart_room(uint8_t number);
+
 // Whether nothing is queued; up to two bytes may still be leaving.
 bool usart_idle(uint8_t number);
 

@@ -129,7 +129,6 @@ void south_begin() {
     TCCR1A = 1 << WGM11;
     TCCR1B = 1 << WGM13 | 1 << WGM12;
     ICR1 = kSouthBitCycles - 1;
-    OCR1B = 0;
     TCNT1 = 0;
     TCCR1B |= 1 << CS10;
 }
@@ -158,8 +157,8 @@ void south_write(const uint8_t* bytes, uint8_t size) {
     toggles_of(bytes, size, const_cast<uint8_t*>(toggles));
     SOUTH_TOGGLES = toggles[0];
     toggles_at = static_cast<uint8_t>(reinterpret_cast<uintptr_t>(&toggles[1]));
-    TIFR1 = 1 << OCF1B; // an old match would make the first bit short
-    TIMSK1 = 1 << OCIE1B;
+    TIFR1 = 1 << TOV1; // an old match would make the first bit short
+    TIMSK1 = 1 << TOIE1;
 }
 
 bool south_idle() {
@@ -174,7 +173,7 @@ uint16_t south_overruns() {
 // that a receiver's sampling allows. The compiler needs twice the cycles.
 
 // First of all the line, so that every edge comes equally late; then, every seventh time, the next toggles.
-ISR(TIMER1_COMPB_vect, ISR_NAKED) {
+ISR(TIMER1_OVF_vect, ISR_NAKED) {
     __asm__ volatile("out %[r24], r24 \n\t"
                      "in r24, __SREG__ \n\t"
                      "out %[flags], r24 \n\t"

@@ -104,6 +104,10 @@ bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size) {
     return queued;
 }
 
+uint8_t usart_room(uint8_t number) {
+    return number == kHostUsart ? host_sending.room() : sending[number].room();
+}
+
 bool usart_idle(uint8_t number) {
     return number == kHostUsart ? host_sending.empty() : sending[number].empty();
 }
