@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from tilenca import paths
+from tilenca import passes, paths
 from tilenca.errors import BuildError, UsageError
 from tilenca.modelfile import MAX_CHANNELS, MAX_WIDTH, Dimensions
 from tilenca.protocol import CRC_SIZE, HEADER_SIZE, LINK_BAUD, MIN_PERIOD_MS
@@ -116,9 +116,11 @@ def macs(size: Dimensions) -> int:
 
 
 def flash_bytes(size: Dimensions, classes: int) -> int:
-    """Bytes of flash that the model's arrays take: int8 weights, int16 biases, looks."""
-    outputs = size.hidden1 + size.hidden2 + size.channels
-    return macs(size) + 2 * outputs + LOOK_BYTES * classes
+    """Bytes of flash that the model's arrays take: weights and biases of whole passes, looks."""
+    weights = sum(
+        passes.layer_bytes(*reversed(shape)) for name, shape in size.shapes().items() if name[0] == "w"
+    )
+    return weights + LOOK_BYTES * classes
 
 
 def frame_bytes(channels: int) -> int:

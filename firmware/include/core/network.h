@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "core/flash.h"
+#include "core/layer.h"
 
 namespace tilenca {
 
@@ -21,19 +21,6 @@ constexpr int16_t kStateMax = kMessageMax << kMessageShift;
 constexpr int16_t kSeedState = 1 << 13; // 1.0, in channel 0 of a cell that was just switched on
 constexpr uint8_t kHiddenShift = 6;     // accumulator 2^-12, activation 2^-6
 constexpr int8_t kHiddenMax = 127;
-
-// One dense layer: `outputs` rows of `inputs` int8 weights each, and an int16 bias per row.
-struct Layer {
-    uint8_t inputs;
-    uint8_t outputs;
-    FlashView<int8_t> weights;
-    FlashView<int16_t> biases;
-
-    FlashBytes row(uint8_t output) const {
-        return weights.bytes_from(static_cast<uint16_t>(output) * inputs);
-    }
-    int16_t bias(uint8_t output) const { return biases[output]; }
-};
 
 // 5 C -> H1 -> H2 -> C. A view: the weights belong to the exported model (or, on the host, to the caller).
 struct Network {
@@ -52,22 +39,30 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
-// Outputs [from, to) of a hidden layer, each 0..127.
-void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs);
+// What a layer reads: as many messages or activations as it has inputs, kEnd behind the last, and their sum.
+struct Inputs {
+    const int8_t* values;
+    int16_t sum;
+};
 
-// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax.
-void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state);
+// Outputs [from, from + kPassOutputs) of a hidden layer, each 0..127, zero beyond its last; returns their sum.
+// `outputs` has room for whole passes.
+int16_t hidden_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int8_t* outputs);
+
+// Adds outputs [from, from + kPassOutputs) of the last layer, as far as it has them, to the state, saturating
+// at +-kStateMax.
+void output_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int16_t* state);
 
 // One update of one cell, a slice at a time.
 class Forward {
   public:
     explicit Forward(const Network& network) : network_(network) {}
 
-    // Starts an update: `inputs` (5 C messages) and `state` (C values, changed in place) stay the caller's
-    // and must live until done().
-    void begin(const int8_t* inputs, int16_t* state);
+    // Starts an update: `inputs` (5 C messages, and room for one more) and `state` (C values, changed in place)
+    // stay the caller's and must live until done().
+    void begin(int8_t* inputs, int16_t* state);
 
-    // Computes at most kOutputsPerSlice outputs, about a millisecond on the chip. No effect when done.
+    // Computes one pass: on the chip, with the widest layer, 1.1 ms. No effect when done.
     void step();
 
     // Gives the update up; the state may be half old, half new.
@@ -77,18 +72,19 @@ class Forward {
 
   private:
     enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
-    static constexpr uint8_t kOutputsPerSlice = 8;
+    // Whole passes, and kEnd.
+    static constexpr uint8_t kHiddenRoom = (kMaxHidden / kPassOutputs + 1) * kPassOutputs;
 
-    void advance(const Layer& layer, Stage next);
+    void hidden_step(const Layer& layer, int8_t* outputs, Stage next);
 
     const Network& network_;
-    const int8_t* inputs_ = nullptr;
+    Inputs inputs_ = {};
     int16_t* state_ = nullptr;
+    int16_t sum_ = 0; // of the current layer's outputs so far
     Stage stage_ = Stage::Done;
     uint8_t from_ = 0; // first output of the current layer that is not computed yet
-    uint8_t to_ = 0;   // end of the current slice
-    int8_t hidden1_[kMaxHidden] = {};
-    int8_t hidden2_[kMaxHidden] = {};
+    int8_t hidden1_[kHiddenRoom] = {};
+    int8_t hidden2_[kHiddenRoom] = {};
 };
 
 } // namespace tilenca
