@@ -20,6 +20,7 @@ from tilenca.protocol import CRC_SIZE, HEADER_SIZE, LINK_BAUD, MIN_PERIOD_MS
 # LPM reaches the low 64 KiB of flash; the vectors and other constants want their part of it.
 MAX_FLASH_BYTES = 60 * 1024
 LOOK_BYTES = 5
+MAX_LAYER_BYTES = 32767  # avr-gcc takes no larger array
 
 SRAM_BYTES = 8192
 # Variables and the deepest stack, less what `buffer_bytes` counts.
@@ -115,12 +116,15 @@ def macs(size: Dimensions) -> int:
     return sum(math.prod(shape) for name, shape in size.shapes().items() if name.startswith("w"))
 
 
+def layer_bytes(size: Dimensions) -> list[int]:
+    """Bytes of flash that each layer takes: weights and biases of whole passes."""
+    weights = (shape for name, shape in size.shapes().items() if name.startswith("w"))
+    return [passes.layer_bytes(inputs, outputs) for outputs, inputs in weights]
+
+
 def flash_bytes(size: Dimensions, classes: int) -> int:
-    """Bytes of flash that the model's arrays take: weights and biases of whole passes, looks."""
-    weights = sum(
-        passes.layer_bytes(*reversed(shape)) for name, shape in size.shapes().items() if name[0] == "w"
-    )
-    return weights + LOOK_BYTES * classes
+    """Bytes of flash that the model's arrays take: layers and looks."""
+    return sum(layer_bytes(size)) + LOOK_BYTES * classes
 
 
 def frame_bytes(channels: int) -> int:
@@ -137,9 +141,13 @@ def buffer_bytes(size: Dimensions) -> int:
     """
     channels = size.channels
     cell = 2 * channels + 5 * channels
+    # Whole passes, and at least one byte behind the last activation.
+    hidden = sum(
+        (width // passes.PASS_OUTPUTS + 1) * passes.PASS_OUTPUTS for width in (size.hidden1, size.hidden2)
+    )
     links = 4 * (channels + (HEADER_SIZE + channels + CRC_SIZE + 1))
     toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // 8)
-    return cell + size.hidden1 + size.hidden2 + links + toggles
+    return cell + hidden + links + toggles
 
 
 WIDEST_BUFFERS = buffer_bytes(Dimensions(MAX_CHANNELS, MAX_WIDTH, MAX_WIDTH))
@@ -218,6 +226,11 @@ def check(size: Dimensions, classes: int) -> Fit:
         raise BuildError(
             f"the model has {size.channels} channels and hidden layers of {size.hidden1} and {size.hidden2}; "
             f"the firmware has room for {MAX_CHANNELS} and {MAX_WIDTH}, train a narrower one"
+        )
+    largest = max(layer_bytes(size))
+    if largest > MAX_LAYER_BYTES:
+        raise BuildError(
+            f"a layer of {largest} bytes, the compiler takes {MAX_LAYER_BYTES}; train with a smaller --hidden"
         )
     found = estimate(size, classes, firmware_period_ms())
     if found.flash_bytes > MAX_FLASH_BYTES:

@@ -1,4 +1,5 @@
-// A dense layer, its weights in flash in the order in which the kernel reads them: docs/PROTOCOL.md section 4.
+// A dense layer, its weights in flash in the order in which the kernel reads them: docs/PROTOCOL.md
+// section 4.
 #pragma once
 
 #include <stdint.h>
@@ -10,8 +11,8 @@ namespace tilenca {
 constexpr uint8_t kPassOutputs = 8; // outputs computed side by side
 constexpr int8_t kEnd = -128;       // behind the last input; no message and no activation is that
 
-// For each pass: a bias per output, then for each input a weight per output, as weight + 128. The outputs that
-// the last pass lacks have zeros.
+// For each pass: a bias per output, then for each input a weight per output, as weight + 128. The outputs
+// that the last pass lacks have zeros.
 struct Layer {
     uint8_t inputs;
     uint8_t outputs;

@@ -45,8 +45,8 @@ struct Inputs {
     int16_t sum;
 };
 
-// Outputs [from, from + kPassOutputs) of a hidden layer, each 0..127, zero beyond its last; returns their sum.
-// `outputs` has room for whole passes.
+// Outputs [from, from + kPassOutputs) of a hidden layer, each 0..127, zero beyond its last; returns their
+// sum. `outputs` has room for whole passes.
 int16_t hidden_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int8_t* outputs);
 
 // Adds outputs [from, from + kPassOutputs) of the last layer, as far as it has them, to the state, saturating
@@ -58,8 +58,8 @@ class Forward {
   public:
     explicit Forward(const Network& network) : network_(network) {}
 
-    // Starts an update: `inputs` (5 C messages, and room for one more) and `state` (C values, changed in place)
-    // stay the caller's and must live until done().
+    // Starts an update: `inputs` (5 C messages, and room for one more) and `state` (C values, changed in
+    // place) stay the caller's and must live until done().
     void begin(int8_t* inputs, int16_t* state);
 
     // Computes one pass: on the chip, with the widest layer, 1.1 ms. No effect when done.
