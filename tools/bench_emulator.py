@@ -126,13 +126,19 @@ def table(rows: Sequence[tuple[str, str, str]]) -> str:
     return "\n".join([*lines, *(f"| {what} | {figure} | {target} |" for what, figure, target in rows)])
 
 
-def written(text: str, section: str) -> str:
-    """The document with our section in its place, or at its end."""
-    ours = f"{BEGIN}\n\n{section}\n\n{END}"
-    before, begin, rest = text.partition(BEGIN)
-    if not begin:
+def written(text: str, begin: str, end: str, section: str) -> str:
+    """The document with the section between `begin` and `end`, or at its end."""
+    ours = f"{begin}\n\n{section}\n\n{end}"
+    before, found, rest = text.partition(begin)
+    if not found:
         return f"{text.rstrip()}\n\n{ours}\n" if text else f"# Benchmarks\n\n{ours}\n"
-    return before + ours + rest.partition(END)[2]
+    return before + ours + rest.partition(end)[2]
+
+
+def put(document: Path, begin: str, end: str, section: str) -> None:
+    """Writes the section into the document."""
+    text = document.read_text(encoding="utf-8") if document.exists() else ""
+    document.write_text(written(text, begin, end, section), encoding="utf-8")
 
 
 def main() -> int:
@@ -152,8 +158,7 @@ def main() -> int:
     section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; other programs may have run meanwhile."
     print(section)
     if args.write is not None:
-        text = args.write.read_text(encoding="utf-8") if args.write.exists() else ""
-        args.write.write_text(written(text, section), encoding="utf-8")
+        put(args.write, BEGIN, END, section)
     return 0
 
 

@@ -78,7 +78,7 @@ def _lines(layer: list[passes.Pass]) -> Iterator[str]:
         first, last = one.outputs.start, one.outputs.stop - 1
         yield f"// outputs {first}..{last}, sums {one.least}..{one.most}: {bits} bits"
         width = passes.PASS_OUTPUTS
-        head, rows = np.split(one.stream, [2 * width])
+        head, rows = np.split(one.stream, [passes.HEAD_BYTES])
         yield _line(head)
         for start in range(0, len(rows), ROW_LINES * width):
             yield _line(rows[start : start + ROW_LINES * width])
@@ -102,13 +102,11 @@ def render(model: Model) -> dict[Path, str]:
     layers = []
     for number, (inputs, outputs) in enumerate(widths, 1):
         layer = passes.passes(model, number)
-        mask = f"0x{passes.narrow_mask(layer):04X}"
         layers.append(
             {
                 "name": f"kLayer{number}",
                 "inputs": inputs,
                 "outputs": outputs,
-                "narrow": mask,
                 "lines": list(_lines(layer)),
             }
         )

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tilenca.modelfile import Model
 
 PASS_OUTPUTS = 8
-WEIGHT_OFFSET = 128
+HEAD_BYTES = 1 + 2 * PASS_OUTPUTS  # width of the sums, biases
+WEIGHT_OFFSET, BIAS_OFFSET = 128, 32768
 ACTIVATION_MAX = 127
 ROUNDING = 32  # what a hidden layer's sum starts with besides its bias
 NARROW_MIN, NARROW_MAX = -(2**15), 2**15 - 1
@@ -23,20 +24,17 @@ class Pass:
 
     Attributes:
         outputs: which.
-        stream: its bytes in flash: biases, then a row of weights per input.
+        stream: its bytes in flash: the head, then a row of weights per input.
         least: the least value any of its sums can take, whatever the inputs.
         most: the greatest.
+        narrow: whether 16 bits hold every sum.
     """
 
     outputs: range
     stream: NDArray[np.uint8]
     least: int
     most: int
-
-    @property
-    def narrow(self) -> bool:
-        """Whether 16 bits hold every sum."""
-        return self.least >= NARROW_MIN and self.most <= NARROW_MAX
+    narrow: bool
 
 
 def padded(outputs: int) -> int:
@@ -46,7 +44,7 @@ def padded(outputs: int) -> int:
 
 def layer_bytes(inputs: int, outputs: int) -> int:
     """Bytes of flash that a layer takes."""
-    return padded(outputs) * (inputs + 2)
+    return padded(outputs) // PASS_OUTPUTS * (HEAD_BYTES + PASS_OUTPUTS * inputs)
 
 
 def passes(model: Model, layer: int) -> list[Pass]:
@@ -61,21 +59,17 @@ def passes(model: Model, layer: int) -> list[Pass]:
     for first in range(0, len(weights), PASS_OUTPUTS):
         outputs = range(first, min(first + PASS_OUTPUTS, len(weights)))
         here = slice(outputs.start, outputs.stop)
-        stream = _stream(weights[here], biases[here])
-        found.append(Pass(outputs, stream, int(least[here].min()), int(most[here].max())))
+        low, high = int(least[here].min()), int(most[here].max())
+        narrow = low >= NARROW_MIN and high <= NARROW_MAX
+        found.append(Pass(outputs, _stream(narrow, weights[here], biases[here]), low, high, narrow))
     return found
 
 
-def _stream(weights: NDArray[np.int64], biases: NDArray[np.int64]) -> NDArray[np.uint8]:
+def _stream(narrow: bool, weights: NDArray[np.int64], biases: NDArray[np.int64]) -> NDArray[np.uint8]:
     absent = PASS_OUTPUTS - len(weights)
-    bias = np.pad(biases, (0, absent)).astype("<i2").view(np.uint8)
+    bias = (np.pad(biases, (0, absent)) + BIAS_OFFSET).astype("<u2").view(np.uint8)
     rows = np.pad(weights, ((0, absent), (0, 0))).T + WEIGHT_OFFSET
-    return np.concatenate([bias, rows.astype(np.uint8).ravel()])
-
-
-def narrow_mask(layer: list[Pass]) -> int:
-    """Bit p: 16 bits hold every sum of pass p."""
-    return sum(1 << index for index, one in enumerate(layer) if one.narrow)
+    return np.concatenate([[np.uint8(narrow)], bias, rows.astype(np.uint8).ravel()])
 
 
 def narrow_outputs(layer: list[Pass]) -> int:

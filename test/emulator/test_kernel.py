@@ -49,7 +49,7 @@ def run(model: Model, folder: Path, vectors: int, *options: str) -> EmulatedTile
     tile = array[0]
     assert tile.fault == ""
     assert tile.integer("vectors") == vectors
-    assert tile.integer("passes") > 0
+    assert tile.integer("calls") > 0
     return tile
 
 
@@ -74,7 +74,7 @@ def test_every_pass_is_that_of_the_portable_code(size: Dimensions, tmp_path: Pat
     assert tile.integer("full_outputs") > 0
     assert tile.integer("full_states") > 0
     if size.hidden1 >= 40:
-        assert tile.integer("wide_passes") == tile.integer("passes")
+        assert tile.integer("wide_passes") == tile.integer("calls")
 
 
 @pytest.mark.parametrize("size", [Dimensions(21, 40, 40), Dimensions(5, 12, 20)], ids=str)

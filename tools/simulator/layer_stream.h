@@ -15,26 +15,26 @@ class LayerStream {
     LayerStream(uint8_t inputs, uint8_t outputs, const int8_t* weights, const int16_t* biases)
         : inputs_(inputs), outputs_(outputs) {
         for (int from = 0; from < outputs; from += kPassOutputs) {
-            bytes_.insert(bytes_.end(), kPassOutputs * sizeof(int16_t), 0);
+            bytes_.insert(bytes_.end(), Layer::kPassHead, 0);
             for (int i = 0; i < inputs; ++i) {
                 for (int j = from; j < from + kPassOutputs; ++j) {
                     bytes_.push_back(static_cast<uint8_t>((j < outputs ? weights[j * inputs + i] : 0) + 128));
                 }
             }
         }
-        for (int j = 0; j < outputs; ++j) {
-            set_bias(static_cast<uint8_t>(j), biases[j]);
+        for (int j = 0; j < (outputs + kPassOutputs - 1) / kPassOutputs * kPassOutputs; ++j) {
+            set_bias(static_cast<uint8_t>(j), j < outputs ? biases[j] : 0);
         }
     }
 
     void set_bias(uint8_t output, int16_t bias) {
-        const int low = layer().start_of(output / kPassOutputs) + output % kPassOutputs * 2;
+        const int low = layer().start_of(output) + 1 + output % kPassOutputs * 2;
         bytes_[low] = static_cast<uint8_t>(bias);
-        bytes_[low + 1] = static_cast<uint8_t>(bias >> 8);
+        bytes_[low + 1] = static_cast<uint8_t>(bias >> 8 ^ 0x80);
     }
 
     // A view of this: it must not outlive it.
-    Layer layer() const { return {inputs_, outputs_, 0, FlashView<uint8_t>(bytes_.data())}; }
+    Layer layer() const { return {inputs_, outputs_, FlashView<uint8_t>(bytes_.data())}; }
 
   private:
     uint8_t inputs_;

@@ -39,19 +39,18 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
-// What a layer reads: as many messages or activations as it has inputs, kEnd behind the last, and their sum.
+// What a layer reads.
 struct Inputs {
-    const int8_t* values;
-    int16_t sum;
+    const int8_t* values; // as many messages or activations as it has inputs, and kEnd
+    int16_t sum;          // of them
 };
 
-// Outputs [from, from + kPassOutputs) of a hidden layer, each 0..127, zero beyond its last; returns their
-// sum. `outputs` has room for whole passes.
-int16_t hidden_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int8_t* outputs);
+// Outputs [from, to) of a hidden layer, each 0..127, and zeros up to a whole pass; returns their sum. `from`
+// is the first of a pass.
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs);
 
-// Adds outputs [from, from + kPassOutputs) of the last layer, as far as it has them, to the state, saturating
-// at +-kStateMax.
-void output_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int16_t* state);
+// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax. `from` is as above.
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state);
 
 // One update of one cell, a slice at a time.
 class Forward {
@@ -62,7 +61,7 @@ class Forward {
     // place) stay the caller's and must live until done().
     void begin(int8_t* inputs, int16_t* state);
 
-    // Computes one pass: on the chip, with the widest layer, 1.1 ms. No effect when done.
+    // Computes some passes, on the chip for 1.2 ms at most. No effect when done.
     void step();
 
     // Gives the update up; the state may be half old, half new.
@@ -74,15 +73,19 @@ class Forward {
     enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
     // Whole passes, and kEnd.
     static constexpr uint8_t kHiddenRoom = (kMaxHidden / kPassOutputs + 1) * kPassOutputs;
+    static constexpr uint8_t kRowsPerSlice = kMaxInputs; // of kPassOutputs weights each, 70 cycles at most
 
-    void hidden_step(const Layer& layer, int8_t* outputs, Stage next);
+    void begin_layer(const Layer& layer, const Inputs& inputs, Stage stage);
+    void hidden_step(int8_t* outputs, const Layer& next, Stage next_stage);
 
     const Network& network_;
+    const Layer* layer_ = nullptr;
     Inputs inputs_ = {};
     int16_t* state_ = nullptr;
     int16_t sum_ = 0; // of the current layer's outputs so far
     Stage stage_ = Stage::Done;
-    uint8_t from_ = 0; // first output of the current layer that is not computed yet
+    uint8_t from_ = 0;  // first output of the current layer that is not computed yet
+    uint8_t slice_ = 0; // how many are computed at a time
     int8_t hidden1_[kHiddenRoom] = {};
     int8_t hidden2_[kHiddenRoom] = {};
 };

@@ -33,41 +33,38 @@ uint8_t best_class(const int16_t* scores, uint8_t classes) {
 #ifdef __AVR__
 
 // firmware/src/avr/kernel.S
-extern "C" int16_t tilenca_pass(uint16_t pass, const int8_t* inputs, int32_t start, void* results,
-                                uint8_t how);
+extern "C" int16_t tilenca_passes(uint16_t passes, const int8_t* inputs, int32_t start, void* results,
+                                  uint8_t count, bool to_state);
 
 namespace {
 
-constexpr uint8_t kNarrow = 0x80;
-
-int16_t run_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int32_t start, void* results,
-                 uint8_t how) {
-    const uint8_t pass = from / kPassOutputs;
-    const uint8_t narrow = layer.narrow >> pass & 1 ? kNarrow : 0;
-    // The weights in flash are 128 too large.
-    return tilenca_pass(layer.stream.address() + layer.start_of(pass), inputs.values,
-                        start - 128L * inputs.sum, results, narrow | how);
+// What the offsets of weights and biases in flash add to every sum.
+int32_t without_offsets(const Inputs& inputs) {
+    return -32768L - inputs.sum * 128L;
 }
 
 } // namespace
 
-int16_t hidden_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int8_t* outputs) {
-    return run_pass(layer, inputs, from, 1 << (kHiddenShift - 1), outputs + from, 0);
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
+    return tilenca_passes(layer.address_of(from), inputs.values,
+                          without_offsets(inputs) + (1 << (kHiddenShift - 1)), outputs + from, to - from,
+                          false);
 }
 
-void output_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int16_t* state) {
-    run_pass(layer, inputs, from, 0, state + from, smaller(kPassOutputs, layer.outputs - from));
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
+    tilenca_passes(layer.address_of(from), inputs.values, without_offsets(inputs), state + from, to - from,
+                   true);
 }
 
 #else
 
-int16_t hidden_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int8_t* outputs) {
-    hidden_outputs<OneCell>(layer, inputs.values, from, from + kPassOutputs, outputs);
-    return sum_of(outputs + from, kPassOutputs);
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
+    const uint8_t end = (to + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
+    hidden_outputs<OneCell>(layer, inputs.values, from, end, outputs);
+    return sum_of(outputs + from, to - from);
 }
 
-void output_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int16_t* state) {
-    const uint8_t to = from + smaller(kPassOutputs, layer.outputs - from);
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
     add_outputs<OneCell>(layer, inputs.values, from, to, state);
 }
 
@@ -76,40 +73,47 @@ void output_pass(const Layer& layer, const Inputs& inputs, uint8_t from, int16_t
 void Forward::begin(int8_t* inputs, int16_t* state) {
     const uint8_t count = network_.hidden1.inputs;
     inputs[count] = kEnd;
-    inputs_ = {inputs, sum_of(inputs, count)};
     state_ = state;
-    sum_ = 0;
-    stage_ = Stage::Hidden1;
-    from_ = 0;
+    begin_layer(network_.hidden1, {inputs, sum_of(inputs, count)}, Stage::Hidden1);
 }
 
 void Forward::step() {
     switch (stage_) {
     case Stage::Hidden1:
-        hidden_step(network_.hidden1, hidden1_, Stage::Hidden2);
+        hidden_step(hidden1_, network_.hidden2, Stage::Hidden2);
         break;
     case Stage::Hidden2:
-        hidden_step(network_.hidden2, hidden2_, Stage::Output);
+        hidden_step(hidden2_, network_.output, Stage::Output);
         break;
-    case Stage::Output:
-        output_pass(network_.output, inputs_, from_, state_);
-        from_ += kPassOutputs;
-        stage_ = from_ < network_.output.outputs ? Stage::Output : Stage::Done;
+    case Stage::Output: {
+        const uint8_t to = from_ + smaller(slice_, layer_->outputs - from_);
+        add_outputs(*layer_, inputs_, from_, to, state_);
+        from_ = to;
+        stage_ = to == layer_->outputs ? Stage::Done : Stage::Output;
         break;
+    }
     case Stage::Done:
         break;
     }
 }
 
-void Forward::hidden_step(const Layer& layer, int8_t* outputs, Stage next) {
-    sum_ += hidden_pass(layer, inputs_, from_, outputs);
-    from_ += kPassOutputs;
-    if (from_ >= layer.outputs) {
-        outputs[layer.outputs] = kEnd;
-        inputs_ = {outputs, sum_};
-        sum_ = 0;
-        from_ = 0;
-        stage_ = next;
+void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage) {
+    const uint8_t passes = kRowsPerSlice / layer.inputs;
+    slice_ = smaller(passes, kMaxHidden / kPassOutputs) * kPassOutputs;
+    layer_ = &layer;
+    inputs_ = inputs;
+    sum_ = 0;
+    from_ = 0;
+    stage_ = stage;
+}
+
+void Forward::hidden_step(int8_t* outputs, const Layer& next, Stage next_stage) {
+    const uint8_t to = from_ + smaller(slice_, layer_->outputs - from_);
+    sum_ += hidden_outputs(*layer_, inputs_, from_, to, outputs);
+    from_ = to;
+    if (to == layer_->outputs) {
+        outputs[to] = kEnd;
+        begin_layer(next, {outputs, sum_}, next_stage);
     }
 }
 

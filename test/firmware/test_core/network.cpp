@@ -65,7 +65,7 @@ void update(Cell& cell, const int8_t* const (&neighbours)[kSides]) {
 int8_t hidden_output_of(int8_t weight, int16_t bias, int8_t input) {
     const LayerStream stream(1, 1, &weight, &bias);
     int8_t outputs[kPassOutputs];
-    const int16_t sum = hidden_pass(stream.layer(), {&input, input}, 0, outputs);
+    const int16_t sum = hidden_outputs(stream.layer(), {&input, input}, 0, 1, outputs);
     CHECK(sum == outputs[0]); // those that the layer does not have are zero
     return outputs[0];
 }
@@ -73,7 +73,7 @@ int8_t hidden_output_of(int8_t weight, int16_t bias, int8_t input) {
 int16_t state_after(int16_t state, int8_t weight, int16_t bias, int8_t input) {
     const LayerStream stream(1, 1, &weight, &bias);
     int16_t states[] = {state, 99};
-    output_pass(stream.layer(), {&input, input}, 0, states);
+    add_outputs(stream.layer(), {&input, input}, 0, 1, states);
     CHECK(states[1] == 99); // of another output, which the layer does not have
     return states[0];
 }
