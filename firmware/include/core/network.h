@@ -39,6 +39,9 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
+// The sum of 5 C messages.
+int16_t sum_of_messages(const int8_t* messages, uint8_t channels);
+
 // What a layer reads.
 struct Inputs {
     const int8_t* values; // as many messages or activations as it has inputs, and kEnd
@@ -61,7 +64,7 @@ class Forward {
     // place) stay the caller's and must live until done().
     void begin(int8_t* inputs, int16_t* state);
 
-    // Computes some passes, on the chip for 1.2 ms at most. No effect when done.
+    // Computes some passes, on the chip for 1.5 ms at most. No effect when done.
     void step();
 
     // Gives the update up; the state may be half old, half new.
@@ -73,10 +76,11 @@ class Forward {
     enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
     // Whole passes, and kEnd.
     static constexpr uint8_t kHiddenRoom = (kMaxHidden / kPassOutputs + 1) * kPassOutputs;
-    static constexpr uint8_t kRowsPerSlice = kMaxInputs; // of kPassOutputs weights each, 70 cycles at most
+    static constexpr int16_t kRowsPerSlice = 320; // of kPassOutputs weights each: 72 cycles at most
 
     void begin_layer(const Layer& layer, const Inputs& inputs, Stage stage);
-    void hidden_step(int8_t* outputs, const Layer& next, Stage next_stage);
+    void next_layer();
+    int8_t* hidden() { return stage_ == Stage::Hidden1 ? hidden1_ : hidden2_; }
 
     const Network& network_;
     const Layer* layer_ = nullptr;

@@ -1,18 +1,18 @@
 ; Outputs of a layer, eight at a time side by side in registers: the functions of core/network.h on the chip.
 ;
-;   int16_t tilenca_passes(const uint8_t* passes, const int8_t* inputs, int32_t start, void* results,
-;                          r25:r24                r23:r22               r20:r18        r17:r16
-;                          uint8_t count, uint8_t to_state)
-;                          r14            r12
+;   int16_t tilenca_passes(const uint8_t* passes, const int8_t* inputs, int16_t sum, void* results,
+;                          r25:r24                r23:r22               r21:r20      r19:r18
+;                          uint8_t count)
+;                          r16
 ;
 ; `passes` in flash: for each pass 1 if 16 bits hold all its sums, else 0; eight biases + 32768 as uint16; then
-; for each input eight weights + 128. `inputs` end with -128. A sum starts with its bias plus `start`. The first
-; `count` outputs, rounded up to whole passes, go to the int8 at `results` as activations, and their sum is
-; returned; or, `to_state`, they are added to the int16 at `results`, `count` of them.
+; for each input eight weights + 128. `inputs` end with -128, and `sum` is theirs. Bits 6..0 of `count` say how
+; many outputs: rounded up to whole passes, they go to the int8 at `results` as activations, and their sum is
+; returned; or, with bit 7, they are added to the int16 at `results`.
 ;
-; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What
-; is too much, 128 times the sum of the inputs and 32768, is in `start`. An input of zero skips its row, that
-; of a negative one is subtracted. Interrupts may come at any time. Stack: 32 bytes with the return address.
+; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What is
+; too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero skips its row, that
+; of a negative one is subtracted. Interrupts may come at any time. Stack: 31 bytes with the return address.
 
 ; r25:r2: eight sums of three bytes. r1:r0: a product. X: the next input. Z: the next weight.
 #define INPUT r28
@@ -24,10 +24,8 @@
 #define SUM 1
 #define INPUTS 3
 #define START 5
-#define TO_STATE 8
-#define COUNT 9
-#define RESULTS 10
-#define FRAME 11
+#define COUNT 8
+#define RESULTS 9
 
 .macro each what:vararg
     \what, r2, r3, r4
@@ -73,30 +71,37 @@
 
 ; All rows. Falls out at the end.
 .macro rows multiply
-    rjmp 3f
-1:  ; a positive input
+    rjmp 2f
+1:  ; zero
+    adiw r30, 8
+2:  ; any
+    ld INPUT, X+
+    cp ZERO, INPUT
+    breq 1b
+    brge 4f
+3:  ; positive
     each \multiply add, adc
     ld INPUT, X+
     cp ZERO, INPUT
-    brlt 1b
-    brne 4f
-2:  ; zero
-    adiw r30, 8
-3:  ; any
-    ld INPUT, X+
-    cp ZERO, INPUT
-    breq 2b
-    brlt 1b
-4:  ; a negative one; only the end is its own negative
+    brlt 3b
+    breq 1b
+4:  ; negative; only the end is its own negative
     neg INPUT
-    brvs 5f
+    brvs 6f
     each \multiply sub, sbc
     ld INPUT, X+
-    cp ZERO, INPUT
-    breq 2b
-    brge 4b
-    rjmp 1b
-5:
+    tst INPUT
+    brmi 4b
+    breq 5f
+    rjmp 3b
+5:  ; zero, too far from the other one
+    adiw r30, 8
+    ld INPUT, X+
+    tst INPUT
+    breq 5b
+    brmi 4b
+    rjmp 3b
+6:
 .endm
 
 ; Scales a sum to 0..127 and stores it at X. r0 is 32, r1 is 127.
@@ -131,10 +136,23 @@ tilenca_passes:
     .irp saved, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29
     push r\saved
     .endr
-    .irp argument, 17, 16, 14, 12, 20, 19, 18, 23, 22, 1, 1
+    movw r30, r24
+    ; Every sum starts at its bias and r26:r25:r24: 32 to round an activation, less the offsets.
+    asr r21
+    ror r20
+    clr r17
+    ror r17
+    ldi r24, 32
+    sbrc r16, 7
+    clr r24
+    sub r24, r17
+    ldi r25, 0x80
+    sbc r25, r20
+    ldi r26, 0xFF
+    sbc r26, r21
+    .irp argument, 19, 18, 16, 26, 25, 24, 23, 22, 1, 1
     push r\argument
     .endr
-    movw r30, r24
 
 .Lpass:
     in r28, SPL
@@ -162,12 +180,10 @@ tilenca_passes:
     in r29, SPH
     ldd r26, Y + RESULTS
     ldd r27, Y + RESULTS + 1
-    ldd r0, Y + TO_STATE
-    tst r0
-    breq 9f
+    ldd r0, Y + COUNT
+    sbrc r0, 7
     rjmp .Lto_state
-
-9:  ldi r28, 127
+    ldi r28, 127
     mov r1, r28
     ldi r28, 32
     mov r0, r28
@@ -188,20 +204,19 @@ tilenca_passes:
     adc r17, r4
     std Y + SUM, r16
     std Y + SUM + 1, r17
-
-.Lnext_pass:
     std Y + RESULTS, r26
     std Y + RESULTS + 1, r27
     ldd r16, Y + COUNT
     subi r16, 8
     std Y + COUNT, r16
-    breq 9f
-    brcs 9f
+    breq .Ldone
+    brcs .Ldone
     rjmp .Lpass
 
-9:  pop r24
+.Ldone:
+    pop r24
     pop r25
-    .irp ignored, 3, 4, 5, 6, 7, 8, 9, 10, 11
+    .irp ignored, 3, 4, 5, 6, 7, 8, 9, 10
     pop r0
     .endr
     .irp saved, 29, 28, 17, 16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2
@@ -210,9 +225,11 @@ tilenca_passes:
     clr r1
     ret
 
-; Z walks through the sums where the chip maps its registers: r2 is at address 2.
+; Z walks through the sums where the chip maps its registers: r2 is at address 2. r4 is read before it is
+; written.
 .Lto_state:
     ldd r28, Y + COUNT
+    andi r28, 0x7F
     cpi r28, 8
     brlo 9f
     ldi r28, 8
@@ -220,14 +237,14 @@ tilenca_passes:
     push r31
     ldi r30, 2
     clr r31
-1:  push r28
-    ld r0, Z+
+1:  ld r0, Z+
+    ld r1, Z+
+    ld r29, Z+
+    mov r4, r28
     ld r28, X+
     add r0, r28
-    ld r1, Z+
     ld r28, X
     adc r1, r28
-    ld r29, Z+
     brcc 2f
     inc r29
 2:  sbrc r28, 7
@@ -257,12 +274,51 @@ tilenca_passes:
 5:  st X, r1
     st -X, r0
     adiw r26, 2
-    pop r28
+    mov r28, r4
     dec r28
     brne 1b
     pop r31
     pop r30
     in r28, SPL
     in r29, SPH
-    rjmp .Lnext_pass
+    std Y + RESULTS, r26
+    std Y + RESULTS + 1, r27
+    ldd r16, Y + COUNT
+    subi r16, 8
+    std Y + COUNT, r16
+    cpi r16, 0x81
+    brsh 9f
+    rjmp .Ldone
+9:  rjmp .Lpass
     .size tilenca_passes, . - tilenca_passes
+
+; The sum of five times `fives` messages.
+;
+;   int16_t tilenca_sum(const int8_t* messages, uint8_t fives)
+;                       r25:r24                 r22
+    .section .text.tilenca_sum, "ax", @progbits
+    .global tilenca_sum
+    .type tilenca_sum, @function
+tilenca_sum:
+    movw r30, r24
+    ; Messages are summed as message + 128, so start at -128 times their number.
+    ldi r25, 5
+    mul r22, r25
+    mov r25, r0
+    clr r24
+    lsr r25
+    ror r24
+    com r25
+    neg r24
+    sbci r25, 0xFF
+    clr r1
+1:  .rept 5
+    ld r20, Z+
+    subi r20, 0x80
+    add r24, r20
+    adc r25, r1
+    .endr
+    dec r22
+    brne 1b
+    ret
+    .size tilenca_sum, . - tilenca_sum
