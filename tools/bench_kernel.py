@@ -1,4 +1,4 @@
-"""Cycles per multiplication of the forward pass on the emulated chip: python tools/bench_kernel.py [--write FILE].
+"""Cycles of the forward pass on the emulated chip: python tools/bench_kernel.py [--write FILE].
 
 They are exact, and the same on every machine.
 """

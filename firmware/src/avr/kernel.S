@@ -12,7 +12,7 @@
 ;
 ; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What is
 ; too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero skips its row, that
-; of a negative one is subtracted. Interrupts may come at any time. Stack: 31 bytes with the return address.
+; of a negative one is subtracted. Interrupts may come at any time. Stack: 33 bytes with the return address.
 
 ; r25:r2: eight sums of three bytes. r1:r0: a product. X: the next input. Z: the next weight.
 #define INPUT r28
