@@ -58,8 +58,9 @@ class Given:
 
 
 def _array(kind: str, name: str, values: NDArray[Any]) -> str:
-    rows = ", ".join("{" + ", ".join(map(repr, row.tolist())) + "}" for row in np.atleast_2d(values))
-    return f"static const {kind} {name} PROGMEM = {{{rows}}};"
+    """A C++ array in flash, of one dimension or two."""
+    braces = str.maketrans("[]", "{}")
+    return f"static const {kind} {name} PROGMEM = {str(values.tolist()).translate(braces)};"
 
 
 @dataclass(frozen=True)
@@ -112,15 +113,15 @@ def tissue(model: Model, steps: int) -> Given:
 
 def measure(model: Model, given: Given, with_float: bool = False) -> Cycles:
     """Runs forward passes on the emulated chip."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        text = given.header()
+    with tempfile.TemporaryDirectory() as directory:
+        folder = Path(directory)
+        lines = [given.header()]
         if with_float:
-            for layer, array in model.floats.items():
-                text += "\n" + _array("float", f"kFloat{layer.upper()}[]", array.ravel()).replace(
-                    "{{", "{"
-                ).replace("}}", "}")
-        folder.joinpath("given.h").write_text(text, encoding="utf-8")
+            lines += [
+                _array("float", f"kFloat{name.upper()}[]", array.ravel())
+                for name, array in model.floats.items()
+            ]
+        folder.joinpath("given.h").write_text("\n".join(lines), encoding="utf-8")
         options = [f"-I{folder}", *(["-DFLOATS"] if with_float else [])]
         elf = kernel.program(model, SOURCES / "kernel.cpp", folder, *options)
         with Array(elf) as array:

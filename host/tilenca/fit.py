@@ -27,7 +27,8 @@ SRAM_BYTES = 8192
 # Variables and the deepest stack, less what `buffer_bytes` counts.
 OTHER_SRAM_BYTES = 1962
 
-# The share of each layer's inputs that is not zero: with four neighbours and the models that ship not more. An update without a zero takes some of HEAD_ROOM.
+# The share of each layer's inputs that is not zero: with four neighbours, the models that ship have no more.
+# An update without a zero takes some of HEAD_ROOM.
 ACTIVE = (1.0, 0.6, 0.4)
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the

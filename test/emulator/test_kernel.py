@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import bench_kernel
 import kernel
-from tilenca import passes
+import stack
+from disassembly import disassemble, parse
+from tilenca import fit, passes
 from tilenca.emulator import Array, EmulatedTile
 from tilenca.glyphs import GLYPHS
 from tilenca.modelfile import Dimensions, Model, load_model
@@ -136,3 +139,27 @@ def test_the_shipped_model_on_the_chip_is_numpy(tmp_path: Path) -> None:
         + model.integer["b3"]
     )
     np.testing.assert_array_equal(array("states", size.channels, np.int16), np.clip(sums, -16256, 16256))
+
+
+def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
+    elf = kernel.program(model_of(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
+    listing = parse(disassemble(elf))
+    found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_passes"])
+    assert found + stack.RETURN_ADDRESS == 33
+
+
+@pytest.mark.parametrize("width", bench_kernel.WIDTHS)
+def test_cycles_of_a_forward_pass_without_a_zero(width: int) -> None:
+    size = Dimensions(21, width, width)
+    found = bench_kernel.measure(bench_kernel.any_model(size, narrow=False), bench_kernel.dense(size))
+    assert found.assembly <= 9.8 * fit.macs(size)
+    found = bench_kernel.measure(bench_kernel.any_model(size, narrow=True), bench_kernel.dense(size))
+    assert found.assembly <= 8.9 * fit.macs(size)
+
+
+@pytest.mark.parametrize("steps", [bench_kernel.STEPS_YOUNG, bench_kernel.STEPS_SETTLED])
+@pytest.mark.parametrize("name", ["digits", "paper"])
+def test_cycles_of_a_forward_pass_in_a_tissue(name: str, steps: int) -> None:
+    model = load_model(ROOT / "models" / name)
+    found = bench_kernel.measure(model, bench_kernel.tissue(model, steps))
+    assert found.assembly <= 6.3 * fit.macs(model.dimensions)

@@ -106,7 +106,7 @@ def test_the_compiled_files_hold_exactly_the_model(
     lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
     for layer, line in zip((1, 2, 3), lines[:3], strict=True):
         values = np.array(line.split(), dtype=np.int64)
-        narrow = [part.narrow for part in passes.passes(model, layer)]
+        narrow = np.array([part.narrow for part in passes.passes(model, layer)])
         expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
         np.testing.assert_array_equal(values, np.concatenate(expected))
     looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]

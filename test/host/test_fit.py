@@ -114,7 +114,7 @@ def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytes
 
 def test_a_check_is_one_line_for_people() -> None:
     line = str(fit.check(Dimensions(37, 64, 64), 26))
-    assert line.startswith("fits a tile: 19,103 bytes of flash")
+    assert line.startswith("fits a tile: 18,983 bytes of flash")
 
 
 def test_more_classes_than_channels_are_refused() -> None:
@@ -155,8 +155,12 @@ def test_a_plan_is_of_the_default_widths_with_all_classes(capsys: pytest.Capture
     assert json.loads(capsys.readouterr().out) == fit.check(Dimensions(), 20).as_json()
 
 
-def test_a_plan_too_slow_for_the_period_fails_and_names_one(capsys: pytest.CaptureFixture[str]) -> None:
-    assert plan("--state", "51", "--hidden", "127", "--json") == 1
+def test_a_plan_too_slow_for_the_period_fails_and_names_one(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fit, "firmware_period_ms", lambda: 20)
+    assert str(fit.check(WIDE, 26)).startswith("fits a tile's memory, but not its period")
+    assert plan("--state", "51", "--hidden", "120", "--json") == 1
     said = capsys.readouterr()
     document = json.loads(said.out)
     assert document["fits"] is False
