@@ -58,7 +58,7 @@ lint: setup-check
 types: setup-check
 	@.venv/bin/mypy
 
-budgets: setup-check ## compare flash, SRAM and stack of the firmware with tools/budgets.toml
+budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware with tools/budgets.toml
 	@$(PIO) run -s -e $(ENV)
 	@$(TILENCA) export --check
 	@$(PYTHON) tools/budgets.py $(ELF)
@@ -70,11 +70,12 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
-bench: setup-train ## print exact sizes of the firmware and the speed of emulation, simulation and training
+bench: setup-train ## print sizes of the firmware, cycles of its kernel, speed of emulation, simulation, training
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
 	@$(PYTHON) tools/bench_links.py $(ELF) --write docs/BENCHMARKS.md
 	@$(PYTHON) tools/bench_training.py
+	@$(PYTHON) tools/bench_kernel.py --write docs/BENCHMARKS.md
 	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay

@@ -34,7 +34,9 @@ INSTRUCTION = 2  # bytes of a short one
 INTERRUPTS = {
     11: "south: an edge is stamped", 20: "south: a bit leaves",
     25: "USB: a byte comes", 26: "USB: a byte leaves",
-    36: "east: a byte comes", 37: "east: a byte leaves", 42: "the millisecond", 45: "the millisecond", 51: "north: a byte comes",
+    36: "east: a byte comes", 37: "east: a byte leaves",
+    42: "the millisecond", 45: "the millisecond",
+    51: "north: a byte comes",
     52: "north: a byte leaves", 54: "west: a byte comes", 55: "west: a byte leaves",
 }  # fmt: skip
 

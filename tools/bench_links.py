@@ -95,7 +95,7 @@ def frames_lost(frames: soak.Frames) -> str:
 def links_table(seconds: float, pair_seconds: float) -> list[str]:
     """Frames lost, ours and theirs."""
     with tempfile.TemporaryDirectory() as folder:
-        soaked = soak.soak(cycles.build(soak.SMALL, Path(folder)), soak.PERIOD_MS, seconds)
+        soaked = soak.soak(cycles.build(soak.small_model(), Path(folder)), soak.PERIOD_MS, seconds)
     rows = [
         f"| this firmware, every {soak.PERIOD_MS} ms, all four sides, awake {soaked.awake:.0%} | "
         f"{frames_lost(soaked.to_software)} | {frames_lost(soaked.from_software)} | "

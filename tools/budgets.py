@@ -9,10 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import cycles
 import stack
 from disassembly import disassemble, parse
 from elf import Firmware
+from tilenca.errors import TilencaError
 
+PERIOD_MS = 20
 BUDGETS = Path(__file__).with_name("budgets.toml")
 
 
@@ -69,6 +72,12 @@ def check_text(firmware: Firmware, text: str) -> Finding:
     return Finding(f'"{text}" in flash', f"at {at:#x}" if at >= 0 else "none", "none", at < 0)
 
 
+def check_cycles(elf: Path, limit: int) -> Finding:
+    """Whether a tile of an array is done with an update, links and all, in time."""
+    awake = cycles.awake(elf, PERIOD_MS)
+    return Finding("cycles per update", f"{awake:,.0f}", f"{limit:,}", awake <= limit)
+
+
 def check(elf: Path, budgets: dict[str, Any]) -> list[Finding]:
     """All findings on one ELF file.
 
@@ -84,6 +93,7 @@ def check(elf: Path, budgets: dict[str, Any]) -> list[Finding]:
         check_flash_data(firmware, budgets["flash"]["data_below"]),
         check_symbols(firmware, budgets["symbols"]["forbidden"]),
         check_text(firmware, budgets["flash"]["forbidden_text"]),
+        check_cycles(elf, budgets["cycles"]["update"]),
     ]
 
 
@@ -91,7 +101,7 @@ def report(elf: Path) -> int:
     """Prints the findings as a table; returns 0 if every budget holds, 1 if not, 4 if it cannot measure."""
     try:
         findings = check(elf, read_budgets())
-    except (OSError, ValueError, stack.StackError, subprocess.CalledProcessError) as error:
+    except (OSError, ValueError, TilencaError, stack.StackError, subprocess.CalledProcessError) as error:
         print(f"budgets: {error}", file=sys.stderr)
         return 4
     for finding in findings:

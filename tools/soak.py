@@ -8,16 +8,17 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import cycles
 from tilenca.emulation import cables
 from tilenca.emulator import NORTH, SOUTH, Array
-from tilenca.modelfile import Dimensions
+from tilenca.modelfile import Dimensions, Model
 from tilenca.protocol import SIDE_LETTERS, HelloSentence, LinkSentence, Sentence, settings_block
 from tilenca.shapes import Shape
 from tilenca.telemetry import LineReader
 
 BLOCK = Shape("B", ("####",) * 5, "B")
-# So narrow that a tile can update every 10 ms with any kernel; the frames are as long as the digits'.
-SMALL = Dimensions(21, 16, 16)
+# Narrow enough to update every 10 ms though nothing in it is zero; the frames are as long as the digits'.
+SMALL = Dimensions(21, 40, 40)
 PERIOD_MS = 10
 PPM_APART = 10_000.0
 SWITCH_ON_S = 0.2
@@ -124,6 +125,11 @@ class Soaked:
     def all(self) -> Frames:
         """All frames."""
         return self.hardware + self.to_software + self.from_software
+
+
+def small_model() -> Model:
+    """A network that keeps a tile busy for most of PERIOD_MS."""
+    return cycles.Probe.of(SMALL, half=False).model()
 
 
 def checkerboard(shape: Shape, apart_ppm: float) -> list[float]:

@@ -13,23 +13,21 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from numpy.typing import NDArray
 
-from tilenca import fit, paths, plan
+from tilenca import fit, passes, paths, plan
 from tilenca.errors import BuildError, TilencaError
 from tilenca.glyphs import GLYPHS, colour_number, colour_of_class
 from tilenca.modelfile import Model, load_model
 
 # Template and, below the firmware's folder, the file it renders.
 TEMPLATES = {"model.h.j2": Path("include/model/model.h"), "model.cpp.j2": Path("src/model/model.cpp")}
-# The narrowest accumulator of any implementation: 24 bits, signed.
+# The widest accumulator of the tile's kernel: 24 bits, signed.
 ACCUMULATOR_MAX = 2**23 - 1
-ACTIVATION_MAX = 127
-LINE_WIDTH = 100
+ROW_LINES = 4  # rows of weights per line of C++
 HEADER = re.compile(
     r"// Rendered by `tilenca export` from model ([0-9A-F]{4}); do not edit. Body ([0-9a-f]{16})\n"
 )
@@ -52,17 +50,6 @@ def looks_of(labels: tuple[str, ...]) -> list[Look]:
     ]
 
 
-def accumulator_bound(weights: NDArray[np.int8], biases: NDArray[np.int16]) -> int:
-    """Largest size an accumulator of this layer can reach, whatever its inputs.
-
-    Args:
-        weights: (outputs, inputs) int8.
-        biases: (outputs,) int16.
-    """
-    rows = np.abs(weights.astype(np.int64)).sum(axis=1) * ACTIVATION_MAX + np.abs(biases.astype(np.int64))
-    return int(rows.max())
-
-
 def check_fits(model: Model) -> None:
     """Refuses a model that the firmware cannot run.
 
@@ -71,12 +58,11 @@ def check_fits(model: Model) -> None:
     """
     fit.check(model.dimensions, len(model.labels))
     for layer in (1, 2, 3):
-        weights, biases = model.integer[f"w{layer}"], model.integer[f"b{layer}"]
-        if weights.min() < -ACTIVATION_MAX:
+        if model.integer[f"w{layer}"].min() < -passes.ACTIVATION_MAX:
             raise BuildError(
                 f"model {model.model_id:04X}: w{layer} has a weight of -128; quantise to -127..127"
             )
-        bound = accumulator_bound(weights, biases)
+        bound = max(max(-one.least, one.most) for one in passes.passes(model, layer))
         if bound > ACCUMULATOR_MAX:
             raise BuildError(
                 f"model {model.model_id:04X}: layer {layer} could add up to {bound}, beyond the 24-bit "
@@ -84,16 +70,21 @@ def check_fits(model: Model) -> None:
             )
 
 
-def _lines(values: NDArray[Any]) -> Iterator[str]:
-    """The values of one array as lines of C++, row by row, none wider than LINE_WIDTH."""
-    for row in np.atleast_2d(values):
-        line = ""
-        for word in (f"{value}," for value in row):
-            if line and len(line) + 1 + len(word) > LINE_WIDTH:
-                yield line
-                line = ""
-            line = f"{line} {word}" if line else word
-        yield line
+def _lines(layer: list[passes.Pass]) -> Iterator[str]:
+    """A layer's stream as lines of C++: for each pass what it is, its biases, then its rows."""
+    for one in layer:
+        bits = 16 if one.narrow else 24
+        first, last = one.outputs.start, one.outputs.stop - 1
+        yield f"// outputs {first}..{last}, sums {one.least}..{one.most}: {bits} bits"
+        width = passes.PASS_OUTPUTS
+        head, rows = np.split(one.stream, [passes.HEAD_BYTES])
+        yield _line(head)
+        for start in range(0, len(rows), ROW_LINES * width):
+            yield _line(rows[start : start + ROW_LINES * width])
+
+
+def _line(values: NDArray[np.uint8]) -> str:
+    return " ".join(f"{value}," for value in values)
 
 
 def render(model: Model) -> dict[Path, str]:
@@ -106,17 +97,19 @@ def render(model: Model) -> dict[Path, str]:
         keep_trailing_newline=True,
         autoescape=False,  # C++, not HTML
     )
-    units = {"w1": "2^-6", "w2": "2^-6", "w3": "2^-7", "b1": "2^-12", "b2": "2^-12", "b3": "2^-13"}
-    arrays = [
-        {
-            "name": f"k{name.upper()}",
-            "type": "int8_t" if name.startswith("w") else "int16_t",
-            "meaning": f"[{']['.join(map(str, shape))}], unit {units[name]}",
-            "lines": list(_lines(model.integer[name])),
-        }
-        for name, shape in model.dimensions.shapes().items()
-    ]
-    context = {"model_id": model.model_id, "size": model.dimensions, "arrays": arrays}
+    widths = (("kTaps * kChannels", "kHidden1"), ("kHidden1", "kHidden2"), ("kHidden2", "kChannels"))
+    layers = []
+    for number, (inputs, outputs) in enumerate(widths, 1):
+        layer = passes.passes(model, number)
+        layers.append(
+            {
+                "name": f"kLayer{number}",
+                "inputs": inputs,
+                "outputs": outputs,
+                "lines": list(_lines(layer)),
+            }
+        )
+    context = {"model_id": model.model_id, "size": model.dimensions, "layers": layers}
     files = {}
     for template, path in TEMPLATES.items():
         body = environment.get_template(template).render(context, looks=looks_of(model.labels))
@@ -181,6 +174,17 @@ def _read(path: Path) -> str | None:
         return None
 
 
+def _sums(model: Model) -> str:
+    """Which sums are proven to need 16 bits only; one line."""
+    narrow = [
+        f"layer {layer} {one.outputs.start}..{one.outputs.stop - 1}"
+        for layer in (1, 2, 3)
+        for one in passes.passes(model, layer)
+        if one.narrow
+    ]
+    return f"sums of 16 bits: {', '.join(narrow) or 'none'}; of 24 bits: all others"
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the arguments of `tilenca export`."""
     parser.add_argument(
@@ -209,6 +213,7 @@ def run(args: argparse.Namespace) -> int:
         "files": [str(args.out / path) for path in files],
         "flash_bytes": fit.flash_bytes(model.dimensions, len(model.labels)),
         "model_id": f"{model.model_id:04X}",
+        "narrow_outputs": [passes.narrow_outputs(passes.passes(model, layer)) for layer in (1, 2, 3)],
         "differing" if args.check else "written": differing,
     }
     if args.json:
@@ -223,4 +228,5 @@ def run(args: argparse.Namespace) -> int:
         for path in files:
             print(f"{args.out / path}: {state}")
         print(f"model {report['model_id']}, {report['flash_bytes']} bytes of flash")
+        print(_sums(model))
     return 0

@@ -10,7 +10,7 @@ import soak
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return cycles.build(soak.SMALL, tmp_path_factory.mktemp("small"))
+    return cycles.build(soak.small_model(), tmp_path_factory.mktemp("small"))
 
 
 @pytest.mark.soak

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../../tools/simulator/layer_stream.h"
 #include "core/model.h"
 
 namespace tilenca {
@@ -45,38 +46,32 @@ class RandomModel {
   public:
     RandomModel(uint8_t channels, uint8_t hidden1, uint8_t hidden2, uint8_t classes, Numbers& numbers,
                 int32_t reach)
-        : w1_(numbers.draw_all<int8_t>(hidden1 * 5 * channels, -reach, reach)),
-          b1_(numbers.draw_all<int16_t>(hidden1, -128 * reach, 128 * reach)),
-          w2_(numbers.draw_all<int8_t>(hidden2 * hidden1, -reach, reach)),
-          b2_(numbers.draw_all<int16_t>(hidden2, -128 * reach, 128 * reach)),
-          w3_(numbers.draw_all<int8_t>(channels * hidden2, -reach, reach)),
-          b3_(numbers.draw_all<int16_t>(channels, -128 * reach, 128 * reach)), looks_(classes) {
+        : hidden1_(random_layer(5 * channels, hidden1, numbers, reach)),
+          hidden2_(random_layer(hidden1, hidden2, numbers, reach)),
+          output_(random_layer(hidden2, channels, numbers, reach)), looks_(classes) {
         for (uint8_t k = 0; k < classes; ++k) {
             looks_[k] = {static_cast<char>('0' + k), k, k, k, k};
         }
     }
 
     Model model(uint16_t id = 0xBEEF) const {
-        const uint8_t channels = static_cast<uint8_t>(b3_.size());
-        const uint8_t hidden1 = static_cast<uint8_t>(b1_.size());
-        const uint8_t hidden2 = static_cast<uint8_t>(b2_.size());
-        const uint8_t inputs = static_cast<uint8_t>(kTaps * channels);
-        const uint8_t classes = static_cast<uint8_t>(looks_.size());
         return {id,
-                classes,
-                {{inputs, hidden1, FlashView<int8_t>(w1_.data()), FlashView<int16_t>(b1_.data())},
-                 {hidden1, hidden2, FlashView<int8_t>(w2_.data()), FlashView<int16_t>(b2_.data())},
-                 {hidden2, channels, FlashView<int8_t>(w3_.data()), FlashView<int16_t>(b3_.data())}},
+                static_cast<uint8_t>(looks_.size()),
+                {hidden1_.layer(), hidden2_.layer(), output_.layer()},
                 FlashView<Look>(looks_.data())};
     }
 
   private:
-    std::vector<int8_t> w1_;
-    std::vector<int16_t> b1_;
-    std::vector<int8_t> w2_;
-    std::vector<int16_t> b2_;
-    std::vector<int8_t> w3_;
-    std::vector<int16_t> b3_;
+    static LayerStream random_layer(int inputs, int outputs, Numbers& numbers, int32_t reach) {
+        const auto weights = numbers.draw_all<int8_t>(outputs * inputs, -reach, reach);
+        const auto biases = numbers.draw_all<int16_t>(outputs, -128 * reach, 128 * reach);
+        return LayerStream(static_cast<uint8_t>(inputs), static_cast<uint8_t>(outputs), weights.data(),
+                           biases.data());
+    }
+
+    LayerStream hidden1_;
+    LayerStream hidden2_;
+    LayerStream output_;
     std::vector<Look> looks_;
 };
 

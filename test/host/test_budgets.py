@@ -11,6 +11,7 @@ import budgets
 import stack
 from disassembly import Program, disassemble, parse
 from elf import Firmware
+from tilenca import paths
 
 NESTED = """
 #include <stdint.h>
@@ -209,6 +210,15 @@ def test_data_beyond_the_reach_of_lpm_is_found(tmp_path: Path) -> None:
     firmware = Firmware(build(tmp_path, source))
     assert not budgets.check_flash_data(firmware, below=65536).holds
     assert budgets.check_flash_data(firmware, below=91000).holds
+
+
+def test_cycles_per_update_are_held_against_the_limit() -> None:
+    limit = budgets.read_budgets()["cycles"]["update"]
+    finding = budgets.check_cycles(paths.FIRMWARE_ELF, limit)
+    assert finding.holds
+    measured = int(finding.measured.replace(",", ""))
+    assert 0.5 * limit < measured, "a budget that far off finds nothing"
+    assert not budgets.check_cycles(paths.FIRMWARE_ELF, measured - 1).holds
 
 
 def test_other_files_are_refused_with_their_name(tmp_path: Path) -> None:

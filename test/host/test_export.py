@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from test_native import random_model
 
-from tilenca import export, fit, paths
+from tilenca import export, fit, passes, paths
 from tilenca.cli import main
 from tilenca.errors import BuildError
 from tilenca.glyphs import GLYPHS
@@ -67,8 +67,12 @@ def test_the_compiled_files_hold_exactly_the_model(
         #include "model/model.h"
         using namespace tilenca;
         void print(const Layer& layer) {
-            for (int i = 0; i < layer.inputs * layer.outputs; ++i) printf("%d ", layer.weights[i]);
-            for (int i = 0; i < layer.outputs; ++i) printf("%d ", layer.biases[i]);
+            for (int j = 0; j < layer.outputs; ++j) {
+                Layer::Row row = layer.row(j);
+                for (int i = 0; i < layer.inputs; ++i) printf("%d ", row.next());
+            }
+            for (int j = 0; j < layer.outputs; ++j) printf("%d ", layer.bias(j));
+            for (int j = 0; j < layer.outputs; j += kPassOutputs) printf("%d ", layer.narrow(j));
             printf("\\n");
         }
         int main() {
@@ -102,7 +106,8 @@ def test_the_compiled_files_hold_exactly_the_model(
     lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
     for layer, line in zip((1, 2, 3), lines[:3], strict=True):
         values = np.array(line.split(), dtype=np.int64)
-        expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"]]
+        narrow = np.array([part.narrow for part in passes.passes(model, layer)])
+        expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
         np.testing.assert_array_equal(values, np.concatenate(expected))
     looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]
     assert lines[3:] == [*looks, f"{model.model_id:04X}"]
@@ -118,11 +123,12 @@ def test_report_as_json(
     files = [str(firmware / HEADER), str(firmware / SOURCE)]
     assert run("--model", model_directory, "--out", firmware, "--json") == 0
     report = json.loads(capsys.readouterr().out)
-    weights = 7 * 25 + 6 * 7 + 5 * 6 + 2 * (7 + 6 + 5)
+    weights = sum(17 + 8 * inputs for inputs in (25, 7, 6))  # one pass each
     assert report == {
         "files": files,
         "flash_bytes": weights + 3 * 5,
         "model_id": f"{model.model_id:04X}",
+        "narrow_outputs": [0, 0, 0],
         "written": files,
     }
     assert run("--model", model_directory, "--out", firmware, "--json") == 0
@@ -166,7 +172,9 @@ def test_current_files_are_not_touched(model_directory: Path, firmware: Path) ->
     assert (firmware / SOURCE).stat().st_ino == before.st_ino
 
 
-@pytest.mark.parametrize("edit", [lambda text: text + "\n", lambda text: text.replace("kW1", "kW0", 1)])
+@pytest.mark.parametrize(
+    "edit", [lambda text: text + "\n", lambda text: text.replace("kLayer1", "kLayer0", 1)]
+)
 def test_a_file_edited_by_hand_is_kept_unless_forced(
     edit: "type[str]", model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -231,10 +239,58 @@ def test_a_directory_that_is_no_model_is_a_usage_error(
     assert "model.json" in capsys.readouterr().err
 
 
-def test_the_bound_of_an_accumulator_is_that_of_its_worst_row() -> None:
-    weights = np.array([[127, -127], [1, 2]], np.int8)
-    assert export.accumulator_bound(weights, np.array([0, -32768], np.int16)) == 3 * 127 + 32768
-    assert export.accumulator_bound(weights, np.array([7, 0], np.int16)) == 2 * 127 * 127 + 7
+def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> passes.Pass:
+    """The only pass of a layer with these weights."""
+    model = random_model(Dimensions(1, 1, 1), 1, seed=1)
+    integer = dict(model.integer)
+    integer[f"w{layer}"], integer[f"b{layer}"] = np.array(weights, np.int8), np.array(biases, np.int16)
+    (found,) = passes.passes(replace(model, integer=integer), layer)
+    return found
+
+
+def test_the_bounds_of_a_pass_are_those_of_its_outermost_outputs() -> None:
+    found = one_layer([[127, -127], [1, 2]], [0, -32768], layer=1)
+    assert (found.least, found.most) == (-3 * 127 - 32768 + 32, 2 * 127 * 127 + 32)
+    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=2)
+    assert (found.least, found.most) == (7 - 127 * 127 + 32, 7 + 127 * 127 + 32), (
+        "activations are not negative"
+    )
+    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=3)
+    assert (found.least, found.most) == (7 - 127 * 127, 7 + 127 * 127), "nothing is rounded"
+
+
+@pytest.mark.parametrize(
+    ("weights", "bias", "layer", "narrow"),
+    [
+        ([127, 127], 32767 - 2 * 127 * 127, 3, True),
+        ([127, 127], 32768 - 2 * 127 * 127, 3, False),
+        ([127, 127], 32767 - 2 * 127 * 127 - 32, 2, True),
+        ([127, 127], 32767 - 2 * 127 * 127 - 31, 2, False),
+        ([-127, -127], -32768 + 2 * 127 * 127, 3, True),
+        ([-127, -127], -32769 + 2 * 127 * 127, 3, False),
+        ([-127, 127], -32769 + 2 * 127 * 127, 3, True),
+        ([-127, 127], -32769 + 2 * 127 * 127 - 32, 1, False),
+    ],
+)
+def test_16_bits_are_used_where_no_input_can_make_them_wrap(
+    weights: list[int], bias: int, layer: int, narrow: bool
+) -> None:
+    assert one_layer([weights], [bias], layer).narrow is narrow
+    assert one_layer([[0, 0], weights], [0, bias], layer).narrow is narrow, "the worst output decides"
+
+
+def test_the_exporter_says_which_sums_have_16_bits(
+    model: Model, firmware: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    integer = {
+        name: array // 64 if name in ("w2", "b2", "w3", "b3") else array
+        for name, array in model.integer.items()
+    }
+    replace(model, integer=integer).save(tmp_path / "small")
+    assert run("--model", tmp_path / "small", "--out", firmware) == 0
+    assert "sums of 16 bits: layer 2 0..5, layer 3 0..4; of 24 bits: all others\n" in capsys.readouterr().out
+    assert run("--model", tmp_path / "small", "--out", firmware, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["narrow_outputs"] == [0, 6, 5]
 
 
 def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -266,9 +322,9 @@ def test_a_weight_of_minus_128_is_refused() -> None:
 
 
 def test_the_widest_model_of_the_largest_weights_fits() -> None:
-    size = Dimensions(51, 127, 127)
+    size = Dimensions(51, 120, 127)
     model = random_model(size, 127, seed=1)
     for name, array in model.integer.items():
         array.fill(127 if name.startswith("w") else -32768)
     export.check_fits(model)
-    assert fit.flash_bytes(size, 1) == 255 * 127 + 127 * 127 + 127 * 51 + 2 * (127 + 127 + 51) + 5
+    assert fit.flash_bytes(size, 1) == 15 * (17 + 8 * 255) + 16 * (17 + 8 * 120) + 7 * (17 + 8 * 127) + 5

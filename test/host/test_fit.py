@@ -10,12 +10,13 @@ import pytest
 import stack
 from disassembly import disassemble, parse
 from elf import Firmware
-from tilenca import export, fit, paths
+from tilenca import export, fit, passes, paths
 from tilenca.cli import main
 from tilenca.errors import BuildError, UsageError
 from tilenca.modelfile import Dimensions, load_model
 
-WIDEST = Dimensions(51, 127, 127)
+WIDEST = Dimensions(51, 127, 127)  # of the buffers; a first layer that wide is refused
+WIDE = Dimensions(51, 120, 127)
 
 
 def plan(*arguments: str) -> int:
@@ -27,12 +28,11 @@ def plan(*arguments: str) -> int:
 
 def test_flash_is_what_the_exported_arrays_take() -> None:
     model = load_model(paths.DEFAULT_MODEL)
-    arrays = sum(array.nbytes for array in model.integer.values())
-    looks = fit.LOOK_BYTES * len(model.labels)
-    assert fit.flash_bytes(model.dimensions, len(model.labels)) == arrays + looks
+    said = fit.flash_bytes(model.dimensions, len(model.labels))
+    streams = sum(len(part.stream) for layer in (1, 2, 3) for part in passes.passes(model, layer))
+    assert said == streams + fit.LOOK_BYTES * len(model.labels)
     symbols = {symbol.name: symbol.size for symbol in Firmware(paths.FIRMWARE_ELF).flash_data()}
-    ours = [size for name, size in symbols.items() if "model" in name and "kModel" not in name]
-    assert sum(ours) == arrays + looks
+    assert sum(size for name, size in symbols.items() if "model" in name and "kModel" not in name) == said
 
 
 def test_sram_is_about_what_the_built_firmware_takes() -> None:
@@ -83,7 +83,7 @@ def test_what_is_wider_costs_more() -> None:
 
 
 def test_the_shortest_period_leaves_a_fifth_of_the_time_free() -> None:
-    for size in (Dimensions(), Dimensions(37, 64, 64), WIDEST):
+    for size in (Dimensions(), Dimensions(37, 64, 64), WIDE):
         period_ms = fit.shortest_period_ms(size)
         assert fit.estimate(size, 10, period_ms).busy <= 0.8
         assert fit.estimate(size, 10, period_ms - 1).busy > 0.8
@@ -114,8 +114,7 @@ def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytes
 
 def test_a_check_is_one_line_for_people() -> None:
     line = str(fit.check(Dimensions(37, 64, 64), 26))
-    assert line.startswith("fits a tile: 18,764 bytes of flash")
-    assert str(fit.check(WIDEST, 26)).startswith("fits a tile's memory, but not its period")
+    assert line.startswith("fits a tile: 18,983 bytes of flash")
 
 
 def test_more_classes_than_channels_are_refused() -> None:
@@ -128,9 +127,15 @@ def test_more_classes_than_channels_are_refused() -> None:
 def test_weights_that_outgrow_the_flash_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fit, "MAX_FLASH_BYTES", 6_000)
     model = load_model(paths.DEFAULT_MODEL)
-    taken = sum(array.nbytes for array in model.integer.values()) + fit.LOOK_BYTES * len(model.labels)
+    taken = fit.flash_bytes(model.dimensions, len(model.labels))
     with pytest.raises(BuildError, match=f"{taken} bytes of weights, the firmware has room for 6000"):
         export.check_fits(load_model(paths.DEFAULT_MODEL))
+
+
+def test_a_layer_larger_than_the_compiler_takes_is_refused() -> None:
+    fit.check(WIDE, 26)
+    with pytest.raises(BuildError, match="a layer of 32912 bytes, the compiler takes 32767"):
+        fit.check(WIDEST, 26)
 
 
 def test_a_plan_as_text_and_as_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -150,8 +155,12 @@ def test_a_plan_is_of_the_default_widths_with_all_classes(capsys: pytest.Capture
     assert json.loads(capsys.readouterr().out) == fit.check(Dimensions(), 20).as_json()
 
 
-def test_a_plan_too_slow_for_the_period_fails_and_names_one(capsys: pytest.CaptureFixture[str]) -> None:
-    assert plan("--state", "51", "--hidden", "127", "--json") == 1
+def test_a_plan_too_slow_for_the_period_fails_and_names_one(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fit, "firmware_period_ms", lambda: 20)
+    assert str(fit.check(WIDE, 26)).startswith("fits a tile's memory, but not its period")
+    assert plan("--state", "51", "--hidden", "120", "--json") == 1
     said = capsys.readouterr()
     document = json.loads(said.out)
     assert document["fits"] is False

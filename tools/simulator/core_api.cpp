@@ -1,12 +1,14 @@
 // The simulator behind a C interface, for models of any size: host/tilenca/native.py and tissue.py call it.
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <memory>
 #include <new>
 #include <vector>
 
 #include "core/network.h"
+#include "layer_stream.h"
 #include "schedule.h"
 #include "setup.h"
 #include "tissue.h"
@@ -54,16 +56,16 @@ tilenca::PackedNetwork packed(const TilencaModel& m) {
 }
 
 void update_as_the_chip_does(const TilencaModel& m, int16_t* states, const int8_t* inputs, size_t count) {
-    using tilenca::FlashView;
     const uint8_t wide = tilenca::kTaps * m.channels;
-    const tilenca::Network network = {
-        {wide, m.hidden1, FlashView<int8_t>(m.w1), FlashView<int16_t>(m.b1)},
-        {m.hidden1, m.hidden2, FlashView<int8_t>(m.w2), FlashView<int16_t>(m.b2)},
-        {m.hidden2, m.channels, FlashView<int8_t>(m.w3), FlashView<int16_t>(m.b3)},
-    };
+    const tilenca::LayerStream hidden1(wide, m.hidden1, m.w1, m.b1);
+    const tilenca::LayerStream hidden2(m.hidden1, m.hidden2, m.w2, m.b2);
+    const tilenca::LayerStream output(m.hidden2, m.channels, m.w3, m.b3);
+    const tilenca::Network network = {hidden1.layer(), hidden2.layer(), output.layer()};
     tilenca::Forward forward(network);
+    int8_t messages[tilenca::kMaxInputs + 1];
     for (size_t i = 0; i < count; ++i) {
-        forward.begin(inputs + i * wide, states + i * m.channels);
+        memcpy(messages, inputs + i * wide, wide);
+        forward.begin(messages, states + i * m.channels);
         while (!forward.done()) {
             forward.step();
         }

@@ -42,7 +42,7 @@ class Cell {
     const Network& network_;
     Forward forward_;
     int16_t state_[kMaxChannels] = {};
-    int8_t inputs_[kMaxInputs] = {}; // the own message lies where the network reads it
+    int8_t inputs_[kMaxInputs + 1] = {}; // the own message lies where the network reads it
 };
 
 } // namespace tilenca

@@ -19,24 +19,25 @@
 
 namespace tilenca {
 
-// Reads consecutive bytes. A stream needs no address arithmetic per byte, which halves the network's inner
-// loop.
-class FlashBytes {
+// Reads every Stride-th byte, with no address arithmetic but one addition per byte.
+template <uint8_t Stride>
+class FlashColumn {
   public:
-    explicit FlashBytes(const int8_t* first) : next_(first) {}
+    explicit FlashColumn(const uint8_t* first) : next_(first) {}
 
-    int8_t next() {
+    uint8_t next() {
 #ifdef __AVR__
-        int8_t value;
-        __asm__("lpm %0, Z+" : "=r"(value), "+z"(next_));
-        return value;
+        uint8_t value;
+        __asm__("lpm %0, %a1" : "=r"(value) : "z"(next_));
 #else
-        return *next_++;
+        const uint8_t value = *next_;
 #endif
+        next_ += Stride;
+        return value;
     }
 
   private:
-    const int8_t* next_;
+    const uint8_t* next_;
 };
 
 // Values of type T that live in flash; the view is two bytes and does not own them.
@@ -55,11 +56,17 @@ class FlashView {
         return value;
     }
 
-    // A stream of bytes that begins at `index`.
-    FlashBytes bytes_from(uint16_t index) const {
+    // The bytes from `index` on, each `Stride` behind the one before.
+    template <uint8_t Stride>
+    FlashColumn<Stride> column(uint16_t index) const {
         static_assert(sizeof(T) == 1, "only bytes can be streamed");
-        return FlashBytes(first_ + index);
+        return FlashColumn<Stride>(first_ + index);
     }
+
+#ifdef __AVR__
+    // Where in flash it begins, for assembly.
+    uint16_t address() const { return reinterpret_cast<uint16_t>(first_); }
+#endif
 
   private:
     const T* first_;

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "core/flash.h"
+#include "core/layer.h"
 
 namespace tilenca {
 
@@ -21,19 +21,6 @@ constexpr int16_t kStateMax = kMessageMax << kMessageShift;
 constexpr int16_t kSeedState = 1 << 13; // 1.0, in channel 0 of a cell that was just switched on
 constexpr uint8_t kHiddenShift = 6;     // accumulator 2^-12, activation 2^-6
 constexpr int8_t kHiddenMax = 127;
-
-// One dense layer: `outputs` rows of `inputs` int8 weights each, and an int16 bias per row.
-struct Layer {
-    uint8_t inputs;
-    uint8_t outputs;
-    FlashView<int8_t> weights;
-    FlashView<int16_t> biases;
-
-    FlashBytes row(uint8_t output) const {
-        return weights.bytes_from(static_cast<uint16_t>(output) * inputs);
-    }
-    int16_t bias(uint8_t output) const { return biases[output]; }
-};
 
 // 5 C -> H1 -> H2 -> C. A view: the weights belong to the exported model (or, on the host, to the caller).
 struct Network {
@@ -52,22 +39,32 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
-// Outputs [from, to) of a hidden layer, each 0..127.
-void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs);
+// The sum of 5 C messages.
+int16_t sum_of_messages(const int8_t* messages, uint8_t channels);
 
-// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax.
-void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state);
+// What a layer reads.
+struct Inputs {
+    const int8_t* values; // as many messages or activations as it has inputs, and kEnd
+    int16_t sum;          // of them
+};
+
+// Outputs [from, to) of a hidden layer, each 0..127, and zeros up to a whole pass; returns their sum. `from`
+// is the first of a pass.
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs);
+
+// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax. `from` is as above.
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state);
 
 // One update of one cell, a slice at a time.
 class Forward {
   public:
     explicit Forward(const Network& network) : network_(network) {}
 
-    // Starts an update: `inputs` (5 C messages) and `state` (C values, changed in place) stay the caller's
-    // and must live until done().
-    void begin(const int8_t* inputs, int16_t* state);
+    // Starts an update: `inputs` (5 C messages, and room for one more) and `state` (C values, changed in
+    // place) stay the caller's and must live until done().
+    void begin(int8_t* inputs, int16_t* state);
 
-    // Computes at most kOutputsPerSlice outputs, about a millisecond on the chip. No effect when done.
+    // Computes some passes, on the chip for 1.5 ms at most. No effect when done.
     void step();
 
     // Gives the update up; the state may be half old, half new.
@@ -77,18 +74,24 @@ class Forward {
 
   private:
     enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
-    static constexpr uint8_t kOutputsPerSlice = 8;
+    // Whole passes, and kEnd.
+    static constexpr uint8_t kHiddenRoom = (kMaxHidden / kPassOutputs + 1) * kPassOutputs;
+    static constexpr int16_t kRowsPerSlice = 320; // of kPassOutputs weights each: 72 cycles at most
 
-    void advance(const Layer& layer, Stage next);
+    void begin_layer(const Layer& layer, const Inputs& inputs, Stage stage);
+    void next_layer();
+    int8_t* hidden() { return stage_ == Stage::Hidden1 ? hidden1_ : hidden2_; }
 
     const Network& network_;
-    const int8_t* inputs_ = nullptr;
+    const Layer* layer_ = nullptr;
+    Inputs inputs_ = {};
     int16_t* state_ = nullptr;
+    int16_t sum_ = 0; // of the current layer's outputs so far
     Stage stage_ = Stage::Done;
-    uint8_t from_ = 0; // first output of the current layer that is not computed yet
-    uint8_t to_ = 0;   // end of the current slice
-    int8_t hidden1_[kMaxHidden] = {};
-    int8_t hidden2_[kMaxHidden] = {};
+    uint8_t from_ = 0;  // first output of the current layer that is not computed yet
+    uint8_t slice_ = 0; // how many are computed at a time
+    int8_t hidden1_[kHiddenRoom] = {};
+    int8_t hidden2_[kHiddenRoom] = {};
 };
 
 } // namespace tilenca

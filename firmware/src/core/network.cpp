@@ -22,48 +22,105 @@ uint8_t best_class(const int16_t* scores, uint8_t classes) {
     return best;
 }
 
-void hidden_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int8_t* outputs) {
-    hidden_outputs<OneCell>(layer, inputs, from, to, outputs);
+#ifdef __AVR__
+
+// firmware/src/avr/kernel.S
+extern "C" {
+int16_t tilenca_passes(uint16_t passes, const int8_t* inputs, int16_t sum, void* results, uint8_t count);
+int16_t tilenca_sum(const int8_t* messages, uint8_t fives);
 }
 
-void add_outputs(const Layer& layer, const int8_t* inputs, uint8_t from, uint8_t to, int16_t* state) {
-    add_outputs<OneCell>(layer, inputs, from, to, state);
+namespace {
+constexpr uint8_t kToState = 0x80;
+static_assert(kTaps == 5, "tilenca_sum");
+} // namespace
+
+int16_t sum_of_messages(const int8_t* messages, uint8_t channels) {
+    return tilenca_sum(messages, channels);
 }
 
-void Forward::begin(const int8_t* inputs, int16_t* state) {
-    inputs_ = inputs;
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
+    return tilenca_passes(layer.address_of(from), inputs.values, inputs.sum, outputs + from, to - from);
+}
+
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
+    tilenca_passes(layer.address_of(from), inputs.values, inputs.sum, state + from, kToState | (to - from));
+}
+
+#else
+
+int16_t sum_of_messages(const int8_t* messages, uint8_t channels) {
+    int16_t sum = 0;
+    for (uint8_t i = 0; i < kTaps * channels; ++i) {
+        sum += messages[i];
+    }
+    return sum;
+}
+
+int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
+    const uint8_t end = (to + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
+    hidden_outputs<OneCell>(layer, inputs.values, from, end, outputs);
+    int16_t sum = 0;
+    for (uint8_t j = from; j < to; ++j) {
+        sum += outputs[j];
+    }
+    return sum;
+}
+
+void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
+    add_outputs<OneCell>(layer, inputs.values, from, to, state);
+}
+
+#endif
+
+void Forward::begin(int8_t* inputs, int16_t* state) {
+    const uint8_t count = network_.hidden1.inputs;
+    inputs[count] = kEnd;
     state_ = state;
-    stage_ = Stage::Hidden1;
+    begin_layer(network_.hidden1, {inputs, sum_of_messages(inputs, network_.channels())}, Stage::Hidden1);
+}
+
+void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage) {
+    uint8_t slice = 0;
+    for (int16_t rows = kRowsPerSlice; rows >= layer.inputs && slice < layer.outputs; rows -= layer.inputs) {
+        slice += kPassOutputs;
+    }
+    slice_ = slice;
+    layer_ = &layer;
+    inputs_ = inputs;
+    sum_ = 0;
     from_ = 0;
+    stage_ = stage;
 }
 
 void Forward::step() {
-    const Layer& layer = stage_ == Stage::Hidden1   ? network_.hidden1
-                         : stage_ == Stage::Hidden2 ? network_.hidden2
-                                                    : network_.output;
-    to_ = smaller(kOutputsPerSlice, layer.outputs - from_) + from_;
-    switch (stage_) {
-    case Stage::Hidden1:
-        hidden_outputs(layer, inputs_, from_, to_, hidden1_);
-        advance(layer, Stage::Hidden2);
-        break;
-    case Stage::Hidden2:
-        hidden_outputs(layer, hidden1_, from_, to_, hidden2_);
-        advance(layer, Stage::Output);
-        break;
-    case Stage::Output:
-        add_outputs(layer, hidden2_, from_, to_, state_);
-        advance(layer, Stage::Done);
-        break;
-    case Stage::Done:
-        break;
+    if (done()) {
+        return;
+    }
+    const Layer& layer = *layer_;
+    const uint8_t from = from_;
+    const uint8_t to = from + smaller(slice_, layer.outputs - from);
+    if (stage_ == Stage::Output) {
+        add_outputs(layer, inputs_, from, to, state_);
+    } else {
+        sum_ += hidden_outputs(layer, inputs_, from, to, hidden());
+    }
+    from_ = to;
+    if (to == layer.outputs) {
+        next_layer();
     }
 }
 
-void Forward::advance(const Layer& layer, Stage next) {
-    const bool layer_done = to_ == layer.outputs;
-    from_ = layer_done ? 0 : to_;
-    stage_ = layer_done ? next : stage_;
+void Forward::next_layer() {
+    if (stage_ == Stage::Output) {
+        stage_ = Stage::Done;
+        return;
+    }
+    int8_t* outputs = hidden();
+    outputs[layer_->outputs] = kEnd;
+    const bool first = stage_ == Stage::Hidden1;
+    begin_layer(first ? network_.hidden2 : network_.output, {outputs, sum_},
+                first ? Stage::Hidden2 : Stage::Output);
 }
 
 } // namespace tilenca

@@ -36,15 +36,13 @@ std::string text_of(const Sentence& sentence) {
 // Three channels; every state grows by 1/8192 * (bias) per update, so that texts are known beforehand.
 struct Fixture {
     const std::vector<int8_t> zeros = std::vector<int8_t>(20, 0);
-    const std::vector<int16_t> no_bias = {0};
-    std::vector<int16_t> growth = {0, 1280, -2560};
+    const std::vector<int16_t> growth = {0, 1280, -2560};
+    const LayerStream hidden1 = LayerStream(15, 1, zeros.data(), growth.data());
+    const LayerStream hidden2 = LayerStream(1, 1, zeros.data(), growth.data());
+    LayerStream output = LayerStream(1, 3, zeros.data(), growth.data());
     const std::vector<Look> looks = {{'4', 0x66, 1, 2, 3}, {'b', 0x7C, 4, 5, 6}};
-    const Model model = {0xBEEF,
-                         2,
-                         {{15, 1, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(no_bias.data())},
-                          {1, 1, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(no_bias.data())},
-                          {1, 3, FlashView<int8_t>(zeros.data()), FlashView<int16_t>(growth.data())}},
-                         FlashView<Look>(looks.data())};
+    const Model model = {
+        0xBEEF, 2, {hidden1.layer(), hidden2.layer(), output.layer()}, FlashView<Look>(looks.data())};
 
     // Ticks until a period has ended; returns that millisecond.
     uint32_t end_period(Tile& tile, uint32_t now_ms) {
@@ -144,8 +142,8 @@ TEST_CASE_FIXTURE(Fixture, "after every period comes a tile sentence, then one l
 }
 
 TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when its label changes") {
-    growth[1] = 0;
-    growth[2] = 0;
+    output.set_bias(1, 0);
+    output.set_bias(2, 0);
     Tile tile(model, {7, 10, 0}, 0);
     Telemetry telemetry;
     Sentence sentence;
@@ -153,7 +151,7 @@ TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when it
     std::vector<uint32_t> spoken_at;
     for (int period = 1; period <= 40; ++period) {
         if (period == 15) {
-            growth[2] = 500; // now the second class wins
+            output.set_bias(2, 500); // now the second class wins
         }
         now_ms = end_period(tile, now_ms);
         telemetry.period_ended(tile);

@@ -63,16 +63,19 @@ void update(Cell& cell, const int8_t* const (&neighbours)[kSides]) {
 
 // One layer of one output, for sums that are easy to see.
 int8_t hidden_output_of(int8_t weight, int16_t bias, int8_t input) {
-    const Layer layer = {1, 1, FlashView<int8_t>(&weight), FlashView<int16_t>(&bias)};
-    int8_t output = 99;
-    hidden_outputs(layer, &input, 0, 1, &output);
-    return output;
+    const LayerStream stream(1, 1, &weight, &bias);
+    int8_t outputs[kPassOutputs];
+    const int16_t sum = hidden_outputs(stream.layer(), {&input, input}, 0, 1, outputs);
+    CHECK(sum == outputs[0]); // those that the layer does not have are zero
+    return outputs[0];
 }
 
 int16_t state_after(int16_t state, int8_t weight, int16_t bias, int8_t input) {
-    const Layer layer = {1, 1, FlashView<int8_t>(&weight), FlashView<int16_t>(&bias)};
-    add_outputs(layer, &input, 0, 1, &state);
-    return state;
+    const LayerStream stream(1, 1, &weight, &bias);
+    int16_t states[] = {state, 99};
+    add_outputs(stream.layer(), {&input, input}, 0, 1, states);
+    CHECK(states[1] == 99); // of another output, which the layer does not have
+    return states[0];
 }
 
 } // namespace
@@ -190,12 +193,11 @@ TEST_CASE("the best class has the greatest stored score, the first among equals"
         const uint8_t channels = static_cast<uint8_t>(scores.size() + 1);
         std::vector<int16_t> biases(1, 0);
         biases.insert(biases.end(), scores.begin(), scores.end());
-        const FlashView<int8_t> no_weights(zeros.data());
         const int16_t no_bias = 0;
-        const Network network = {
-            {static_cast<uint8_t>(5 * channels), 1, no_weights, FlashView<int16_t>(&no_bias)},
-            {1, 1, no_weights, FlashView<int16_t>(&no_bias)},
-            {1, channels, no_weights, FlashView<int16_t>(biases.data())}};
+        const LayerStream hidden1(5 * channels, 1, zeros.data(), &no_bias);
+        const LayerStream hidden2(1, 1, zeros.data(), &no_bias);
+        const LayerStream output(1, channels, zeros.data(), biases.data());
+        const Network network = {hidden1.layer(), hidden2.layer(), output.layer()};
         Cell cell(network);
         update(cell, {nullptr, nullptr, nullptr, nullptr});
         return cell.best_class(static_cast<uint8_t>(scores.size()));

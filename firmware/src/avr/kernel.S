@@ -1,0 +1,324 @@
+; Outputs of a layer, eight at a time side by side in registers: the functions of core/network.h on the chip.
+;
+;   int16_t tilenca_passes(const uint8_t* passes, const int8_t* inputs, int16_t sum, void* results,
+;                          r25:r24                r23:r22               r21:r20      r19:r18
+;                          uint8_t count)
+;                          r16
+;
+; `passes` in flash: for each pass 1 if 16 bits hold all its sums, else 0; eight biases + 32768 as uint16; then
+; for each input eight weights + 128. `inputs` end with -128, and `sum` is theirs. Bits 6..0 of `count` say how
+; many outputs: rounded up to whole passes, they go to the int8 at `results` as activations, and their sum is
+; returned; or, with bit 7, they are added to the int16 at `results`.
+;
+; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What is
+; too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero skips its row, that
+; of a negative one is subtracted. Interrupts may come at any time. Stack: 33 bytes with the return address.
+
+; r25:r2: eight sums of three bytes. r1:r0: a product. X: the next input. Z: the next weight.
+#define INPUT r28
+#define ZERO r29
+#define SPL 0x3d
+#define SPH 0x3e
+
+; The frame, from Y + 1.
+#define SUM 1
+#define INPUTS 3
+#define START 5
+#define COUNT 8
+#define RESULTS 9
+
+.macro each what:vararg
+    \what, r2, r3, r4
+    \what, r5, r6, r7
+    \what, r8, r9, r10
+    \what, r11, r12, r13
+    \what, r14, r15, r16
+    \what, r17, r18, r19
+    \what, r20, r21, r22
+    \what, r23, r24, r25
+.endm
+
+; The bias plus r0:X; r1 is zero.
+.macro start_sum ignored, low, middle, high
+    lpm \low, Z+
+    lpm \middle, Z+
+    mov \high, r0
+    add \low, r26
+    adc \middle, r27
+    adc \high, r1
+.endm
+
+.macro multiply24 add, adc, low, middle, high
+    lpm r0, Z+
+    mul r0, INPUT
+    \add \low, r0
+    \adc \middle, r1
+    \adc \high, ZERO
+.endm
+
+.macro multiply16 add, adc, low, middle, high
+    lpm r0, Z+
+    mul r0, INPUT
+    \add \low, r0
+    \adc \middle, r1
+.endm
+
+.macro extend_sign ignored, low, middle, high
+    mov \high, \middle
+    lsl \high
+    sbc \high, \high
+.endm
+
+; All rows. Falls out at the end.
+.macro rows multiply
+    rjmp 2f
+1:  ; zero
+    adiw r30, 8
+2:  ; any
+    ld INPUT, X+
+    cp ZERO, INPUT
+    breq 1b
+    brge 4f
+3:  ; positive
+    each \multiply add, adc
+    ld INPUT, X+
+    cp ZERO, INPUT
+    brlt 3b
+    breq 1b
+4:  ; negative; only the end is its own negative
+    neg INPUT
+    brvs 6f
+    each \multiply sub, sbc
+    ld INPUT, X+
+    tst INPUT
+    brmi 4b
+    breq 5f
+    rjmp 3b
+5:  ; zero, too far from the other one
+    adiw r30, 8
+    ld INPUT, X+
+    tst INPUT
+    breq 5b
+    brmi 4b
+    rjmp 3b
+6:
+.endm
+
+; Scales a sum to 0..127 and stores it at X. r0 is 32, r1 is 127.
+.macro activate low, middle, high
+    tst \high
+    brne 2f
+    cp \middle, r0
+    brlo 3f
+1:  mov \middle, r1
+    rjmp 4f
+2:  brpl 1b
+    clr \middle
+    rjmp 4f
+3:  lsl \low
+    rol \middle
+    lsl \low
+    rol \middle
+4:  st X+, \middle
+.endm
+
+; The same, and adds it to r4:r3; r2 is zero.
+.macro activate_next low, middle, high
+    activate \low, \middle, \high
+    add r3, \middle
+    adc r4, r2
+.endm
+
+    .section .text.tilenca_passes, "ax", @progbits
+    .global tilenca_passes
+    .type tilenca_passes, @function
+tilenca_passes:
+    .irp saved, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29
+    push r\saved
+    .endr
+    movw r30, r24
+    ; Every sum starts at its bias and r26:r25:r24: 32 to round an activation, less the offsets.
+    asr r21
+    ror r20
+    clr r17
+    ror r17
+    ldi r24, 32
+    sbrc r16, 7
+    clr r24
+    sub r24, r17
+    ldi r25, 0x80
+    sbc r25, r20
+    ldi r26, 0xFF
+    sbc r26, r21
+    .irp argument, 19, 18, 16, 26, 25, 24, 23, 22, 1, 1
+    push r\argument
+    .endr
+
+.Lpass:
+    in r28, SPL
+    in r29, SPH
+    ldd r26, Y + START
+    ldd r27, Y + START + 1
+    lpm r0, Z+
+    bst r0, 0
+    ldd r0, Y + START + 2
+    clr r1
+    each start_sum 0
+    ldd r26, Y + INPUTS
+    ldd r27, Y + INPUTS + 1
+    clr ZERO
+    brtc 9f
+    rjmp .Lnarrow
+9:  rows multiply24
+    rjmp .Lend_of_rows
+.Lnarrow:
+    rows multiply16
+    each extend_sign 0
+
+.Lend_of_rows:
+    in r28, SPL
+    in r29, SPH
+    ldd r26, Y + RESULTS
+    ldd r27, Y + RESULTS + 1
+    ldd r0, Y + COUNT
+    sbrc r0, 7
+    rjmp .Lto_state
+    ldi r28, 127
+    mov r1, r28
+    ldi r28, 32
+    mov r0, r28
+    activate r2, r3, r4
+    clr r2
+    clr r4
+    activate_next r5, r6, r7
+    activate_next r8, r9, r10
+    activate_next r11, r12, r13
+    activate_next r14, r15, r16
+    activate_next r17, r18, r19
+    activate_next r20, r21, r22
+    activate_next r23, r24, r25
+    in r28, SPL
+    ldd r16, Y + SUM
+    ldd r17, Y + SUM + 1
+    add r16, r3
+    adc r17, r4
+    std Y + SUM, r16
+    std Y + SUM + 1, r17
+    std Y + RESULTS, r26
+    std Y + RESULTS + 1, r27
+    ldd r16, Y + COUNT
+    subi r16, 8
+    std Y + COUNT, r16
+    breq .Ldone
+    brcs .Ldone
+    rjmp .Lpass
+
+.Ldone:
+    pop r24
+    pop r25
+    .irp ignored, 3, 4, 5, 6, 7, 8, 9, 10
+    pop r0
+    .endr
+    .irp saved, 29, 28, 17, 16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2
+    pop r\saved
+    .endr
+    clr r1
+    ret
+
+; Z walks through the sums where the chip maps its registers: r2 is at address 2. r4 is read before it is
+; written.
+.Lto_state:
+    ldd r28, Y + COUNT
+    andi r28, 0x7F
+    cpi r28, 8
+    brlo 9f
+    ldi r28, 8
+9:  push r30
+    push r31
+    ldi r30, 2
+    clr r31
+1:  ld r0, Z+
+    ld r1, Z+
+    ld r29, Z+
+    mov r4, r28
+    ld r28, X+
+    add r0, r28
+    ld r28, X
+    adc r1, r28
+    brcc 2f
+    inc r29
+2:  sbrc r28, 7
+    dec r29
+    ; r29:r1:r0 is the new state, to be kept within 0x3F80 of zero.
+    tst r29
+    brmi 3f
+    ldi r28, 0x3F
+    brne 4f
+    cp r1, r28
+    brlo 5f
+    brne 4f
+    sbrs r0, 7
+    rjmp 5f
+    rjmp 4f
+3:  ldi r28, 0xC0
+    inc r29
+    brne 4f
+    cp r28, r1
+    brlo 5f
+    brne 4f
+    sbrc r0, 7
+    rjmp 5f
+4:  mov r1, r28
+    ldi r28, 0x80
+    mov r0, r28
+5:  st X, r1
+    st -X, r0
+    adiw r26, 2
+    mov r28, r4
+    dec r28
+    brne 1b
+    pop r31
+    pop r30
+    in r28, SPL
+    in r29, SPH
+    std Y + RESULTS, r26
+    std Y + RESULTS + 1, r27
+    ldd r16, Y + COUNT
+    subi r16, 8
+    std Y + COUNT, r16
+    cpi r16, 0x81
+    brsh 9f
+    rjmp .Ldone
+9:  rjmp .Lpass
+    .size tilenca_passes, . - tilenca_passes
+
+; The sum of five times `fives` messages.
+;
+;   int16_t tilenca_sum(const int8_t* messages, uint8_t fives)
+;                       r25:r24                 r22
+    .section .text.tilenca_sum, "ax", @progbits
+    .global tilenca_sum
+    .type tilenca_sum, @function
+tilenca_sum:
+    movw r30, r24
+    ; Messages are summed as message + 128, so start at -128 times their number.
+    ldi r25, 5
+    mul r22, r25
+    mov r25, r0
+    clr r24
+    lsr r25
+    ror r24
+    com r25
+    neg r24
+    sbci r25, 0xFF
+    clr r1
+1:  .rept 5
+    ld r20, Z+
+    subi r20, 0x80
+    add r24, r20
+    adc r25, r1
+    .endr
+    dec r22
+    brne 1b
+    ret
+    .size tilenca_sum, . - tilenca_sum

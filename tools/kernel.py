@@ -1,0 +1,27 @@
+"""Programs for the emulated chip around the firmware's kernel and a network of any widths."""
+
+import subprocess
+from pathlib import Path
+
+from tilenca import export, paths
+from tilenca.modelfile import Model
+
+SOURCES = ("src/core/network.cpp", "src/avr/kernel.S", "src/model/model.cpp")
+
+
+def program(model: Model, source: Path, folder: Path, *options: str) -> Path:
+    """`source`, compiled for the chip as the firmware is, with the model and the kernel; its ELF file.
+
+    Raises:
+        CalledProcessError: it does not compile.
+    """
+    for path, text in export.render(model).items():
+        folder.joinpath(path).parent.mkdir(parents=True, exist_ok=True)
+        folder.joinpath(path).write_text(text, encoding="utf-8")
+    elf = folder / f"{source.stem}.elf"
+    command = ["avr-g++", "-mmcu=atmega2560", "-DF_CPU=16000000UL", "-std=gnu++14", "-O2", "-Wall", "-Wextra"]
+    command += ["-Werror", f"-I{folder / 'include'}", f"-I{paths.FIRMWARE / 'include'}", *options]
+    core, kernel, weights = SOURCES
+    sources = [source, paths.FIRMWARE / core, paths.FIRMWARE / kernel, folder / weights]
+    subprocess.run([*command, "-o", str(elf), *map(str, sources)], check=True)
+    return elf
