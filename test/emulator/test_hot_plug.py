@@ -69,7 +69,7 @@ class Table:
 
 
 def steps(old: set[Cell], new: set[Cell], draw: random.Random) -> list[tuple[bool, Cell]]:
-    """(put down?, where) of each change: first what is missing, beside what is there, then what is too much."""
+    """(put down?, where) of each change: what is missing, beside what is there, then what is too much."""
     tiles, done = set(old), []
     while missing := [cell for cell in sorted(new - tiles) if any(near in tiles for near in around(cell))]:
         cell = draw.choice(missing)

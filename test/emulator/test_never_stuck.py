@@ -1,4 +1,4 @@
-"""A tile that hangs starts again and says so; it knows why it started, how its time goes, and who is strange."""
+"""A tile that hangs starts again and says so; it knows why it started, and who is a stranger."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -12,8 +12,8 @@ struct Appearance {
     uint8_t leds; // one bit per side, in the order N E S W
 };
 
-// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: all
-// segments and white blink instead of the class, as no shape does.
+// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: a
+// white 8 blinks instead of the class.
 Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms);
 
 // A colour's duty at a brightness, both of 255.

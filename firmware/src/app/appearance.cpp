@@ -4,7 +4,7 @@ namespace tilenca {
 
 namespace {
 
-constexpr Look kFound = {'8', 0xFF, 60, 60, 60};
+constexpr Look kFound = {'8', 0x7F, 60, 60, 60};
 
 // Half of the time, about twice a second.
 bool lit_phase(uint32_t now_ms) {

@@ -156,7 +156,7 @@ TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its li
     const Look look = model.looks[tile.shown()];
     CHECK_FALSE(appearance_of(tile, false, 0).look != look);
     CHECK(appearance_of(tile, true, 0).look.segments == 0);
-    CHECK(appearance_of(tile, true, 256).look.segments == 0xFF);
+    CHECK(appearance_of(tile, true, 256).look.segments == 0x7F);
     CHECK(appearance_of(tile, false, 0).leds == 0);
 
     const int8_t message[6] = {};
