@@ -7,8 +7,8 @@ from rich.table import Table
 from rich.text import Text
 
 from tilenca.tables import table
-from tilenca.telemetry import Event, Fleet, PortNews, TileView, type_of
-from tilenca.wording import printable, words
+from tilenca.telemetry import Event, Fleet, PortNews, TileView
+from tilenca.wording import printable, said
 
 # A tile that said nothing for so long, and for two of its periods where we know them, may be in trouble.
 QUIET_S = 3.0
@@ -27,7 +27,7 @@ def log_line(event: Event) -> str:
         return f"{head} - PORT {'open' if event.is_open else event.reason}"
     if event.sentence is None:
         return f"{head} - DAMAGED {printable(event.raw)}"
-    return f"{head} tile {event.sentence.tile} {type_of(event.sentence)} {words(event.sentence)}"
+    return f"{head} {said(event.sentence)}"
 
 
 HEADER = (
