@@ -13,6 +13,9 @@ void usart_begin(uint8_t number, uint32_t baud);
 // The next byte received, if any.
 bool usart_read(uint8_t number, uint8_t* byte);
 
+// Bytes received and lost since the start, because nobody took those before them; said a little late.
+uint16_t usart_overruns(uint8_t number);
+
 // Queues all of the bytes or, if there is no room for all, none.
 bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 

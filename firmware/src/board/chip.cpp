@@ -1,6 +1,5 @@
 #include "board/chip.h"
 
-#include <avr/eeprom.h>
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -17,11 +16,15 @@ uint32_t now = 0;           // as last told
 
 void clock_begin() {
     TIMSK0 = 0;
-    TCCR4A = 0;
-    TCCR4B = 1 << WGM42 | 1 << CS40; // from 0 to OCR4A, one count per cycle
-    OCR4A = F_CPU / 1000 - 1;
+    // Fast PWM with ICR4 as top (mode 14), one count per cycle: its outputs dim segments.
+    TCCR4B = 0;
+    TCCR4A = 1 << WGM41;
+    TCCR4B = 1 << WGM43 | 1 << WGM42;
+    ICR4 = kClockTop - 1;
     TCNT4 = 0;
-    TIMSK4 = 1 << OCIE4A;
+    TIFR4 = 1 << TOV4;
+    TIMSK4 = 1 << TOIE4;
+    TCCR4B |= 1 << CS40;
 }
 
 uint32_t now_ms() {
@@ -29,7 +32,15 @@ uint32_t now_ms() {
     return now;
 }
 
-ISR(TIMER4_COMPA_vect) {
+uint16_t stamp() {
+    const uint8_t interrupts = SREG;
+    cli();
+    const uint16_t count = TCNT5; // through a register that the south link's interrupt uses too
+    SREG = interrupts;
+    return count;
+}
+
+ISR(TIMER4_OVF_vect) {
     ++ticks;
 }
 
@@ -44,16 +55,6 @@ void sleep() {
     }
     sei();
     sleep_disable();
-}
-
-void read_eeprom(uint8_t* bytes, uint8_t size) {
-    eeprom_read_block(bytes, nullptr, size);
-}
-
-uint8_t take_reset_cause() {
-    const uint8_t cause = MCUSR;
-    MCUSR = 0;
-    return cause;
 }
 
 } // namespace board

@@ -2,6 +2,7 @@
 
 #include <avr/io.h>
 
+#include "board/chip.h"
 #include "board/gpio.h"
 #include "board/south_uart.h"
 
@@ -23,11 +24,68 @@ void face_begin() {
     TCCR2B = 1 << CS22;
     TCCR3A = 1 << WGM30;
     TCCR3B = 1 << CS31 | 1 << CS30;
-    show_segments(0);
+    show_segments(0, 0);
     show_colour(0, 0, 0);
 }
 
-void show_segments(uint8_t segments) {
+namespace {
+
+// The compare value that gives `duty` of 255, at least 1, on a fast PWM timer of so many counts.
+uint16_t compare_of(uint8_t duty, uint16_t counts) {
+    return static_cast<uint16_t>(static_cast<uint32_t>(duty) * counts / 255 - 1);
+}
+
+// The output of a segment's pin: the register that joins it to its timer, and by which bit. No two share a
+// compare unit with each other or with a colour. The decimal point's timer is timer 0, which has other work.
+struct Dimmer {
+    volatile uint8_t* control;
+    uint8_t bit;
+};
+constexpr uint8_t kDimmed = 7;
+
+Dimmer dimmer_of(uint8_t segment) {
+    switch (segment) {
+    case 0:
+        return {&TCCR4A, COM4B1};
+    case 1:
+        return {&TCCR4A, COM4A1};
+    case 2:
+        return {&TCCR3A, COM3A1};
+    case 3:
+        return {&TCCR1A, COM1C1};
+    case 4:
+        return {&TCCR1A, COM1B1};
+    case 5:
+        return {&TCCR2A, COM2B1};
+    default:
+        return {&TCCR4A, COM4C1};
+    }
+}
+
+void set_duty_of_segments(uint8_t duty) {
+    OCR4A = OCR4B = OCR4C = compare_of(duty, kClockTop);
+    OCR1B = OCR1C = compare_of(duty, kSouthBitCycles);
+    OCR3A = duty;
+    OCR2B = duty;
+}
+
+} // namespace
+
+void show_segments(uint8_t segments, uint8_t brightness) {
+    if (brightness == 0) {
+        segments = 0;
+    } else {
+        set_duty_of_segments(brightness);
+    }
+    for (uint8_t i = 0; i < kDimmed; ++i) {
+        const Dimmer dimmer = dimmer_of(i);
+        // At full brightness the pin is simply high: no timer, no flicker.
+        if ((segments >> i & 1) && brightness != 0xFF) {
+            *dimmer.control |= 1 << dimmer.bit;
+        } else {
+            *dimmer.control &= ~(1 << dimmer.bit);
+        }
+    }
     for (uint8_t i = 0; i < 8; ++i) {
         set(kSegments[i], segments >> i & 1);
     }
@@ -38,7 +96,7 @@ void show_colour(uint8_t red, uint8_t green, uint8_t blue) {
     if (red == 0) {
         TCCR1A &= ~(1 << COM1A1);
     } else {
-        OCR1A = static_cast<uint16_t>(static_cast<uint32_t>(red) * kSouthBitCycles / 255 - 1);
+        OCR1A = compare_of(red, kSouthBitCycles);
         TCCR1A |= 1 << COM1A1;
     }
     OCR2A = green;

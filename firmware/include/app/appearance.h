@@ -1,0 +1,24 @@
+// What a person is to see of a tile: digit and colour, and one debug LED per side.
+#pragma once
+
+#include <stdint.h>
+
+#include "app/tile.h"
+
+namespace tilenca {
+
+struct Appearance {
+    uint8_t shown; // a class, Tile::kNothing: dark, or kFound
+    uint8_t leds;  // one bit per side, in the order N E S W
+
+    static constexpr uint8_t kFound = 0xFE;
+};
+
+// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: a
+// white 8 blinks instead of the class.
+Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms);
+
+// How that looks, at the tile's brightness.
+Look look_of(const Tile& tile, uint8_t shown);
+
+} // namespace tilenca
