@@ -40,15 +40,18 @@ INTERRUPTS = {
     52: "north: a byte leaves", 54: "west: a byte comes", 55: "west: a byte leaves",
 }  # fmt: skip
 
+# The functions of firmware/src/avr/kernel.S.
+KERNEL = ("tilenca_passes", "tilenca_sum")
+
+NETWORK, LOOP = "the network", "main loop, display, button, clock"
 # What a source file's instructions are for; what is in none of these is the main loop.
 PARTS = {
-    "the network": ("arithmetic", "network", "cell", "flash", "kernel", "perceptron", "model"),
+    NETWORK: ("arithmetic", "network", "cell", "flash", "layer", "model"),
     "frames: COBS, CRC, counters": ("frame", "link", "crc16"),
     "links: queues": ("usart", "ring", "links"),
     "south: edges to bytes, bytes to toggles": ("south_uart", "edge_receiver", "toggles"),
-    "telemetry and commands": ("telemetry", "sentence", "command", "commands", "settings"),
+    "telemetry, commands, timing": ("telemetry", "sentence", "command", "host", "settings", "timing", "boot"),
 }
-LOOP = "main loop, display, button, clock"
 ASLEEP, INTERRUPTED = "asleep", "interrupts"
 
 
@@ -155,6 +158,8 @@ def part_of(function: str, place: str) -> str:
     """What an instruction is for, by its function and `file:line`."""
     if function.startswith("__vector"):
         return INTERRUPTED
+    if function in KERNEL:
+        return NETWORK  # assembly has no line numbers, and passes for the file before it
     stem = Path(place.rsplit(":", 1)[0]).stem
     for part, stems in PARTS.items():
         if stem in stems:

@@ -42,16 +42,16 @@ class EdgeReceiver {
         uint16_t sample_at = 0; // the middle of that bit
     };
 
-    static int16_t sample(State& state, uint16_t until);
-    static int16_t change(State& state, uint16_t stamp);
+    static bool sample(State& state, uint16_t until);
+    static bool change(State& state, uint16_t stamp);
 
     State state_;
 };
 
-// The level has stayed until then. Returns the byte that this completed, or kNoByte.
+// The level has stayed until then. True if this completed state.byte.
 template <uint8_t kBitCounts>
-inline int16_t EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
-    int16_t result = kNoByte;
+inline bool EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
+    bool complete = false;
     int16_t since_sample = static_cast<int16_t>(until - state.sample_at);
     while (state.bit != kIdle && since_sample >= 0) {
         since_sample -= kBitCounts;
@@ -62,50 +62,47 @@ inline int16_t EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
             ++state.bit;
         } else {
             state.bit = kIdle;
-            result = state.level ? state.byte : kNoByte; // no stop bit: not a byte
+            complete = state.level; // no stop bit: not a byte
         }
     }
     state.sample_at = until - static_cast<uint16_t>(since_sample);
-    return result;
+    return complete;
 }
 
-// The line has changed. Returns the byte that this completed, or kNoByte.
+// The line has changed. True if this completed state.byte.
 template <uint8_t kBitCounts>
-inline int16_t EdgeReceiver<kBitCounts>::change(State& state, uint16_t stamp) {
+inline bool EdgeReceiver<kBitCounts>::change(State& state, uint16_t stamp) {
     const uint8_t before = state.level;
     state.level = stamp & 1 ? kHigh : 0;
-    int16_t result = kNoByte;
-    if (state.bit == kStopBit && before && !state.level) {
-        // The next start bit, though half of the stop bit is still due: a fast sender, or a stamp that came
-        // late before one that came early. The line was high, which is all a stop bit has to say.
-        result = state.byte;
-        state.bit = kIdle;
+    if (state.level) {
+        return false;
     }
+    // Falling in the stop bit: the next start bit, though half of the stop bit is still due; a fast sender,
+    // or a stamp that came late before one that came early. The line was high, which is all a stop bit has to
+    // say.
+    const bool complete = state.bit == kStopBit && before;
     // Even if it was low before: then the edge between was missed, and the line has fallen again.
-    if (state.bit == kIdle && !state.level) {
+    if (state.bit == kIdle || complete) {
         state.bit = kStartBit;
         state.sample_at = stamp + kBitCounts / 2;
     }
-    return result;
+    return complete;
 }
 
 template <uint8_t kBitCounts>
 template <typename Source>
 inline int16_t EdgeReceiver<kBitCounts>::receive(Source source, uint16_t now) {
     State state = state_;
-    int16_t result;
-    uint16_t stamp;
-    do {
-        const bool changed = source(&stamp);
-        result = sample(state, changed ? stamp : now);
-        if (!changed) {
-            break;
-        }
-        const int16_t early = change(state, stamp);
-        result = early == kNoByte ? result : early;
-    } while (result == kNoByte);
+    bool complete = false;
+    for (uint16_t stamp; !complete && source(&stamp);) {
+        complete = sample(state, stamp);
+        complete |= change(state, stamp);
+    }
+    if (!complete) {
+        complete = sample(state, now);
+    }
     state_ = state;
-    return result;
+    return complete ? state.byte : kNoByte;
 }
 
 } // namespace tilenca
