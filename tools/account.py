@@ -179,13 +179,14 @@ def shares(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
             array.run(SAMPLE_S)
             seen[tile.pc] += 1
         after, slept_after = tile.cycles
+        functions = {address: array.function_at(address) for address in seen}
     asleep = (slept_after - slept_before) / (after - before)
     awake = {address: count for address, count in seen.items() if address - INSTRUCTION not in beds}
-    command = ["avr-addr2line", "-f", "-e", str(elf), *map(hex, awake)]
-    told = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
+    command = ["avr-addr2line", "-e", str(elf), *map(hex, awake)]
+    places = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
     found: Counter[str] = Counter()
-    for count, function, place in zip(awake.values(), told[::2], told[1::2], strict=True):
-        found[part_of(function, place)] += count
+    for (address, count), place in zip(awake.items(), places, strict=True):
+        found[part_of(functions[address], place)] += count
     total = sum(found.values())
     return {ASLEEP: asleep} | {part: (1 - asleep) * count / total for part, count in found.most_common()}
 
