@@ -29,6 +29,7 @@ EXTRA_SCRIPT = paths.ROOT / "tools" / "links" / "debug_info.py"
 # Cycles before an interrupt's first instruction: its entry and the jump there. And those of its return.
 ENTRY, RETURN = 5 + 3, 5
 CLOCK_HZ = 16e6
+VECTORS, VECTOR_BYTES = 57, 4
 INSTRUCTION = 2  # bytes of a short one
 
 INTERRUPTS = {
@@ -186,7 +187,8 @@ def shares(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
     places = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
     found: Counter[str] = Counter()
     for (address, count), place in zip(awake.items(), places, strict=True):
-        found[part_of(functions[address], place)] += count
+        vector = address < VECTORS * VECTOR_BYTES
+        found[INTERRUPTED if vector else part_of(functions[address], place)] += count
     total = sum(found.values())
     return {ASLEEP: asleep} | {part: (1 - asleep) * count / total for part, count in found.most_common()}
 
