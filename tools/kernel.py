@@ -6,7 +6,8 @@ from pathlib import Path
 from tilenca import export, paths
 from tilenca.modelfile import Model
 
-SOURCES = ("src/core/network.cpp", "src/avr/kernel.S", "src/model/model.cpp")
+SOURCES = ("src/core/network.cpp", "src/avr/kernel.S", "src/avr/sum.S")
+WEIGHTS = "src/model/model.cpp"
 
 
 def program(model: Model, source: Path, folder: Path, *options: str) -> Path:
@@ -21,7 +22,6 @@ def program(model: Model, source: Path, folder: Path, *options: str) -> Path:
     elf = folder / f"{source.stem}.elf"
     command = ["avr-g++", "-mmcu=atmega2560", "-DF_CPU=16000000UL", "-std=gnu++14", "-O2", "-Wall", "-Wextra"]
     command += ["-Werror", f"-I{folder / 'include'}", f"-I{paths.FIRMWARE / 'include'}", *options]
-    core, kernel, weights = SOURCES
-    sources = [source, paths.FIRMWARE / core, paths.FIRMWARE / kernel, folder / weights]
+    sources = [source, *(paths.FIRMWARE / path for path in SOURCES), folder / WEIGHTS]
     subprocess.run([*command, "-o", str(elf), *map(str, sources)], check=True)
     return elf

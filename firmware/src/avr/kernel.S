@@ -10,13 +10,13 @@
 ; many outputs: rounded up to whole passes, they go to the int8 at `results` as activations, and their sum is
 ; returned; or, with bit 7, they are added to the int16 at `results`.
 ;
-; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What is
-; too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero skips its row, that
-; of a negative one is subtracted. Interrupts may come at any time. Stack: 33 bytes with the return address.
+; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What
+; is too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero
+; skips its row, that of a negative one is subtracted. Interrupts may come at any time. Stack: 33 bytes with
+; the return address.
 
-; r25:r2: eight sums of three bytes. r1:r0: a product. X: the next input. Z: the next weight.
-#define INPUT r28
-#define ZERO r29
+#include "rows.inc"
+
 #define SPL 0x3d
 #define SPH 0x3e
 
@@ -26,108 +26,6 @@
 #define START 5
 #define COUNT 8
 #define RESULTS 9
-
-.macro each what:vararg
-    \what, r2, r3, r4
-    \what, r5, r6, r7
-    \what, r8, r9, r10
-    \what, r11, r12, r13
-    \what, r14, r15, r16
-    \what, r17, r18, r19
-    \what, r20, r21, r22
-    \what, r23, r24, r25
-.endm
-
-; The bias plus r0:X; r1 is zero.
-.macro start_sum ignored, low, middle, high
-    lpm \low, Z+
-    lpm \middle, Z+
-    mov \high, r0
-    add \low, r26
-    adc \middle, r27
-    adc \high, r1
-.endm
-
-.macro multiply24 add, adc, low, middle, high
-    lpm r0, Z+
-    mul r0, INPUT
-    \add \low, r0
-    \adc \middle, r1
-    \adc \high, ZERO
-.endm
-
-.macro multiply16 add, adc, low, middle, high
-    lpm r0, Z+
-    mul r0, INPUT
-    \add \low, r0
-    \adc \middle, r1
-.endm
-
-.macro extend_sign ignored, low, middle, high
-    mov \high, \middle
-    lsl \high
-    sbc \high, \high
-.endm
-
-; All rows. Falls out at the end.
-.macro rows multiply
-    rjmp 2f
-1:  ; zero
-    adiw r30, 8
-2:  ; any
-    ld INPUT, X+
-    cp ZERO, INPUT
-    breq 1b
-    brge 4f
-3:  ; positive
-    each \multiply add, adc
-    ld INPUT, X+
-    cp ZERO, INPUT
-    brlt 3b
-    breq 1b
-4:  ; negative; only the end is its own negative
-    neg INPUT
-    brvs 6f
-    each \multiply sub, sbc
-    ld INPUT, X+
-    tst INPUT
-    brmi 4b
-    breq 5f
-    rjmp 3b
-5:  ; zero, too far from the other one
-    adiw r30, 8
-    ld INPUT, X+
-    tst INPUT
-    breq 5b
-    brmi 4b
-    rjmp 3b
-6:
-.endm
-
-; Scales a sum to 0..127 and stores it at X. r0 is 32, r1 is 127.
-.macro activate low, middle, high
-    tst \high
-    brne 2f
-    cp \middle, r0
-    brlo 3f
-1:  mov \middle, r1
-    rjmp 4f
-2:  brpl 1b
-    clr \middle
-    rjmp 4f
-3:  lsl \low
-    rol \middle
-    lsl \low
-    rol \middle
-4:  st X+, \middle
-.endm
-
-; The same, and adds it to r4:r3; r2 is zero.
-.macro activate_next low, middle, high
-    activate \low, \middle, \high
-    add r3, \middle
-    adc r4, r2
-.endm
 
     .section .text.tilenca_passes, "ax", @progbits
     .global tilenca_passes
@@ -291,34 +189,3 @@ tilenca_passes:
     rjmp .Ldone
 9:  rjmp .Lpass
     .size tilenca_passes, . - tilenca_passes
-
-; The sum of five times `fives` messages.
-;
-;   int16_t tilenca_sum(const int8_t* messages, uint8_t fives)
-;                       r25:r24                 r22
-    .section .text.tilenca_sum, "ax", @progbits
-    .global tilenca_sum
-    .type tilenca_sum, @function
-tilenca_sum:
-    movw r30, r24
-    ; Messages are summed as message + 128, so start at -128 times their number.
-    ldi r25, 5
-    mul r22, r25
-    mov r25, r0
-    clr r24
-    lsr r25
-    ror r24
-    com r25
-    neg r24
-    sbci r25, 0xFF
-    clr r1
-1:  .rept 5
-    ld r20, Z+
-    subi r20, 0x80
-    add r24, r20
-    adc r25, r1
-    .endr
-    dec r22
-    brne 1b
-    ret
-    .size tilenca_sum, . - tilenca_sum

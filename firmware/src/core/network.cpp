@@ -24,7 +24,7 @@ uint8_t best_class(const int16_t* scores, uint8_t classes) {
 
 #ifdef __AVR__
 
-// firmware/src/avr/kernel.S
+// firmware/src/avr
 extern "C" {
 int16_t tilenca_passes(uint16_t passes, const int8_t* inputs, int16_t sum, void* results, uint8_t count);
 int16_t tilenca_sum(const int8_t* messages, uint8_t fives);
