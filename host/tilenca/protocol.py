@@ -13,7 +13,8 @@ PROTOCOL_VERSION = 2
 KIND_STATE = 0
 
 # Frames between tiles (section 1).
-LINK_BAUD = 38400
+LINK_BAUD = 38400  # between south and north
+ROW_BAUD = 125000  # between east and west
 HEADER_SIZE = 5
 CRC_SIZE = 2
 MAX_CHANNELS = 51

@@ -9,9 +9,10 @@ from vandals import Edges, Vandal, noise, random_bytes
 
 from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
 from tilenca.paths import FIRMWARE
-from tilenca.protocol import LINK_BAUD
+from tilenca.protocol import LINK_BAUD, ROW_BAUD
 
 SIDES = (NORTH, EAST, SOUTH, WEST)
+BAUD = {NORTH: LINK_BAUD, EAST: ROW_BAUD, SOUTH: LINK_BAUD, WEST: ROW_BAUD}
 USARTS = (NORTH, EAST, WEST)
 SLICE_S = 0.01
 # A queue of 64 bytes holds one less.
@@ -78,7 +79,7 @@ def run(array: Array, seconds: float, vandals: list[Vandal]) -> None:
         array.run(SLICE_S)
 
 
-def line(data: bytes, start_s: float, baud: float = LINK_BAUD) -> Edges:
+def line(data: bytes, start_s: float, baud: float) -> Edges:
     """A line that says these bytes and then rests."""
     time_s, level = start_s, True
     for byte in data:
@@ -99,7 +100,7 @@ def some_bytes(count: int) -> bytes:
 def test_all_sides_hear_every_byte_at_once(elf: Path, error: float) -> None:
     array = Array(elf)
     data = [some_bytes(1000 + side) for side in SIDES]
-    vandals = [Vandal(array[0], side, line(data[side], 0.01, LINK_BAUD * (1 + error))) for side in SIDES]
+    vandals = [Vandal(array[0], side, line(data[side], 0.01, BAUD[side] * (1 + error))) for side in SIDES]
     run(array, 0.3, vandals)
     assert numbers(array, "heard") == [len(text) for text in data]
     assert numbers(array, "sums") == [sum(text) & 0xFF for text in data]
@@ -109,7 +110,7 @@ def test_all_sides_hear_every_byte_at_once(elf: Path, error: float) -> None:
 def test_what_is_not_read_in_time_is_counted_and_what_comes_later_is_heard(elf: Path) -> None:
     array = Array(elf)
     count = 200
-    vandals = [Vandal(array[0], side, line(some_bytes(count), 0.01)) for side in SIDES]
+    vandals = [Vandal(array[0], side, line(some_bytes(count), 0.01, BAUD[side])) for side in SIDES]
     address, _ = array.symbol("deaf")
     array.run(0.001)
     array[0].write_memory(address & 0xFFFF, b"\1")
@@ -122,7 +123,7 @@ def test_what_is_not_read_in_time_is_counted_and_what_comes_later_is_heard(elf: 
     # The south side gives up what it cannot trust.
     assert (heard[SOUTH], lost[SOUTH]) == (0, 1)
     now_s = array.time_s
-    run(array, 0.1, [Vandal(array[0], side, line(b"later", now_s + 0.01)) for side in SIDES])
+    run(array, 0.1, [Vandal(array[0], side, line(b"later", now_s + 0.01, BAUD[side])) for side in SIDES])
     assert [after - before for after, before in zip(numbers(array, "heard"), heard, strict=True)] == [5] * 4
     assert numbers(array, "lost") == lost
 
@@ -155,5 +156,5 @@ def test_noise_is_counted_and_speech_after_it_is_heard(elf: Path) -> None:
     array[0].push_edge(*array[0].side_pin(SOUTH, receiving=True), round((array.time_s + 0.002) * 16e6), True)
     array.run(0.05)
     heard = numbers(array, "heard")[SOUTH]
-    run(array, 0.1, [Vandal(array[0], SOUTH, line(b"speech", array.time_s + 0.01))])
+    run(array, 0.1, [Vandal(array[0], SOUTH, line(b"speech", array.time_s + 0.01, LINK_BAUD))])
     assert numbers(array, "heard")[SOUTH] == heard + 6

@@ -14,6 +14,7 @@ namespace {
 
 constexpr uint32_t kBaud = 38400;
 constexpr uint8_t kChannels = 21;
+constexpr uint16_t kModelId = 0x1234;
 constexpr uint8_t kRxPin = A14;
 constexpr uint8_t kTxPin = A15;
 
@@ -51,8 +52,11 @@ void write(uint8_t side) {
     for (int8_t& message : messages) {
         message = static_cast<int8_t>(random(-kMessageMax, kMessageMax + 1));
     }
+    FrameHeader header{};
+    header.sequence = line.sequence++;
+    header.model_id = kModelId;
     uint8_t wire[kMaxFrame];
-    const uint8_t size = encode_frame({line.sequence++, 0x1234}, messages, kChannels, wire);
+    const uint8_t size = encode_frame(header, messages, kChannels, wire);
     line.stream.write(wire, size);
     ++frames_sent[side];
 }

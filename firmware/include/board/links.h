@@ -8,6 +8,10 @@
 namespace tilenca {
 namespace board {
 
+// Between south and north, and between east and west. The second is 16 MHz / 128, exactly.
+constexpr uint32_t kLinkBaud = 38400;
+constexpr uint32_t kRowBaud = 125000;
+
 void links_begin();
 
 // The next byte from this side, if any. Ask every side at least every six milliseconds.

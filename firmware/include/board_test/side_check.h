@@ -17,7 +17,6 @@ enum class Verdict : uint8_t {
     LoopBack,   // heard all that was sent here
     Neighbour,  // heard a tile that hears us
     Unheard,    // heard a tile that does not
-    WrongSide,  // heard a side that does not fit to this one
     Unreliable, // heard, but not everything
 };
 
@@ -48,8 +47,7 @@ class SideCheck {
 
     Verdict verdict() const { return verdict_; }
 
-    // The side that was heard, and how many of its packets got lost; in the last window.
-    Side heard() const { return heard_; }
+    // How many packets got lost in the last window.
     uint8_t lost() const { return lost_; }
 
   private:
@@ -71,7 +69,6 @@ class SideCheck {
     bool was_high_ = false;
 
     // Of the last one.
-    Side heard_ = Side::North;
     uint8_t lost_ = 0;
     bool hears_ = false; // whether anything came in it
 };

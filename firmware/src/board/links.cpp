@@ -9,7 +9,10 @@ namespace board {
 
 namespace {
 
-constexpr uint32_t kLinkBaud = 38400;
+// East and west have USARTs at both ends; north meets the software UART of the tile above.
+constexpr uint32_t baud_of(Side side) {
+    return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
+}
 
 uint8_t usart_of(Side side) {
     return kSideUsart[index_of(side)];
@@ -23,7 +26,7 @@ void links_begin() {
             south_begin();
         } else {
             pull_up(kSideRx[i]);
-            usart_begin(kSideUsart[i], kLinkBaud);
+            usart_begin(kSideUsart[i], baud_of(side_at(i)));
         }
     }
 }

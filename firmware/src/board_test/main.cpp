@@ -45,8 +45,6 @@ PGM_P text_of(Verdict verdict) {
         return PSTR("pass, a tile that hears this one, from its side ");
     case Verdict::Unheard:
         return PSTR("FAIL, a tile that does not hear this one: a broken line from ");
-    case Verdict::WrongSide:
-        return PSTR("FAIL, joined to side ");
     case Verdict::Unreliable:
         return PSTR("FAIL, packets lost: ");
     }
@@ -68,8 +66,7 @@ void say_side(uint8_t i) {
         say(board::kSideTx[i]);
         break;
     case Verdict::Neighbour:
-    case Verdict::WrongSide:
-        say(kSideLetters[index_of(check.heard())]);
+        say(kSideLetters[index_of(opposite(side_at(i)))]);
         break;
     case Verdict::Unreliable:
         say_number(check.lost());

@@ -32,7 +32,9 @@ void SideCheck::receive(uint8_t byte) {
     memmove(window_, window_ + 1, kPacketSize - 1);
     window_[kPacketSize - 1] = byte;
     const uint16_t crc = static_cast<uint16_t>(window_[6] | static_cast<uint16_t>(window_[7]) << 8);
-    if (window_[0] == kMark && (window_[1] & kSideMask) < kSides && crc == crc16(window_, kChecked)) {
+    const Side from = side_at(window_[1] & kSideMask);
+    const bool fits = from == side_ || from == opposite(side_);
+    if (window_[0] == kMark && fits && crc == crc16(window_, kChecked)) {
         accept(window_[1], window_[2]);
     }
 }
@@ -58,16 +60,12 @@ Verdict SideCheck::found() const {
     if (from_ == side_) {
         return Verdict::LoopBack;
     }
-    if (from_ != opposite(side_)) {
-        return Verdict::WrongSide;
-    }
     return heard_us_ ? Verdict::Neighbour : Verdict::Unheard;
 }
 
 bool SideCheck::judge() {
     const Verdict before = verdict_;
     verdict_ = found();
-    heard_ = from_;
     lost_ = missed_;
     hears_ = received_ != 0;
     in_sequence_ = hears_; // after silence the next packet follows none
