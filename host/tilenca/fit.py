@@ -43,7 +43,7 @@ CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10
 FRAMING_BYTES = 2  # COBS and the delimiter
 # The part of the time that stays free at the shortest period; clocks drift, and telemetry comes in bursts.
-HEAD_ROOM = 0.2
+HEAD_ROOM = 0.1
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ def firmware_period_ms() -> int:
     period = re.search(r"TILENCA_PERIOD_MS=(\d+)", flags)
     if period is None or int(period[1]) < MIN_PERIOD_MS:
         raise BuildError(
-            f"{path}: [env:{paths.FIRMWARE_ENV}] names no period; add -D TILENCA_PERIOD_MS=100 to build_flags"
+            f"{path}: [env:{paths.FIRMWARE_ENV}] names no period; add -D TILENCA_PERIOD_MS=20 to build_flags"
         )
     return int(period[1])
 
