@@ -1,6 +1,6 @@
-"""Prints how fast training is against plain convolutions over padded grids: tools/bench_training.py.
+"""Prints how fast training is against plain PyTorch: tools/bench_training.py.
 
-Both let the same batch live through the same rounds and give the gradient of the same loss, on one thread;
+All let the same batch live through the same rounds and give the gradient of the same loss, on one thread;
 that they agree is checked. The batch is the paper's: 128 drawings of 5 x 4, half of the tiles in a round.
 """
 
@@ -19,7 +19,7 @@ from tilenca.life import library
 from tilenca.model import TileNet, initial_arrays
 from tilenca.modelfile import Dimensions
 from tilenca.recipes import RECIPES
-from tilenca.rollout import live, use_threads
+from tilenca.rollout import live, live_by_autograd, use_threads
 from tilenca.schedule import Schedule, draw_schedule
 
 ROUNDS, BATCH, TURNS, SEED = 19, 128, 5, 1
@@ -57,8 +57,13 @@ def seconds_of(do: Callable[[], Tensor], net: TileNet) -> float:
     return time.process_time() - started_s
 
 
+def ratio(slow: Callable[[], Tensor], fast: Callable[[], Tensor], net: TileNet) -> float:
+    """How many times as long the first takes, the two in turns."""
+    return float(np.median([seconds_of(slow, net) / seconds_of(fast, net) for _ in range(TURNS)]))
+
+
 def main() -> int:
-    """Prints the ratio; 1 when the two disagree."""
+    """Prints the ratios; 1 when ours and the convolutions disagree."""
     use_threads(1)
     random = np.random.default_rng(SEED)
     drawings = load_drawings([paths.DEFAULT_SHAPES])
@@ -96,14 +101,18 @@ def main() -> int:
     def convolved() -> Tensor:
         return by_convolution(net, grid, fires, tiles)
 
+    def by_pytorch() -> Tensor:
+        return live_by_autograd(net, start, schedule)
+
     apart = (convolved()[samples, :, rows, cols] - ours()).abs().max().item()
-    turns = [(seconds_of(convolved, net), seconds_of(ours, net)) for _ in range(TURNS)]
-    ratio = np.median([slow / fast for slow, fast in turns])
-    print(
-        f"training, one thread   {1e3 * np.median([fast for _, fast in turns]):.1f} ms for a life of {BATCH} "
-        f"drawings and its gradient, {ratio:.1f} times faster than convolutions over the padded grid "
-        f"({library().tilenca_life_kind().decode()})"
-    )
+    kind = library().tilenca_life_kind().decode()
+    print(f"training: a life of {BATCH} drawings and its gradient, one thread, {kind}")
+    ways = {"convolutions over the padded grid": convolved, "plain PyTorch on real tiles": by_pytorch}
+    for name, way in ways.items():
+        print(f"  {ratio(way, ours, net):.1f} times faster than {name}")
+    net.update = torch.compile(net.update)  # type: ignore[method-assign]
+    by_pytorch().sum().backward()  # type: ignore[no-untyped-call]
+    print(f"  {ratio(by_pytorch, ours, net):.1f} times faster than the latter with torch.compile")
     return int(apart > 1e-4)
 
 

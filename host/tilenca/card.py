@@ -21,6 +21,8 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         if metrics["ended_early"]
         else f"{made['recipe']['iterations']} iterations"
     )
+    if metrics["kept"] != metrics["iterations"]:
+        ending += f", of which what was measured best is kept, after {metrics['kept']}"
     lines = [
         f"# Model {model.model_id:04X}: {' '.join(model.labels)}",
         "",

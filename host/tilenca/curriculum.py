@@ -15,7 +15,7 @@ from tilenca.drawings import Drawings
 from tilenca.recipes import Recipe
 from tilenca.shapes import UNKNOWN, Shape
 from tilenca.sizes import Size, Sizes
-from tilenca.stretch import Rows
+from tilenca.stretch import Rows, smallest
 from tilenca.variants import Known
 
 DAMAGED = " damaged"
@@ -55,31 +55,34 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     fitting = sizes.within(task.largest, recipe.stretch)
     scales = _scales(task, fitting.trained + fitting.more)
     known = Known((shape.label, shape.rows) for scale in scales for shape in scale)
+    damaged = list(_damaged(scales[:1], known)) if recipe.damaged else []
+    # A stroke missing from a large drawing looks, larger, like one tile missing from a small one.
+    doubtful = {smallest(shape.rows) for _, shape in damaged}
     drawn = len(task.sources)
     drawn_scales, others = range(drawn), range(drawn, len(scales))
     with_unknown = recipe.unknown > 0 and UNKNOWN in task.labels
     unknown = {
-        name: list(_unknown(scales, which, each, draw, known, random)) if with_unknown else []
+        name: list(_unknown(scales, which, each, draw, known, doubtful, random)) if with_unknown else []
         for name, which, each, draw in (
             ("strokes", drawn_scales, 100, variants.some_strokes),
             ("edited", drawn_scales, 100, variants.some_edited),
             ("halves", drawn_scales, 100, variants.some_halves),
             ("grown", drawn_scales, 100, variants.some_grown),
-            ("elsewhere", others, 8, variants.some_strokes),
+            ("elsewhere", others, 12, variants.some_strokes),
             ("elsewhere edited", others, 3, variants.some_edited),
         )
     }
     shares = {
-        "strokes": 0.42,
+        "strokes": 0.4,
         "edited": 0.08,
         "halves": 0.17,
         "grown": 0.1,
-        "elsewhere": 0.2,
+        "elsewhere": 0.22,
         "elsewhere edited": 0.03,
     }
     kinds: list[tuple[float, list[tuple[int, Shape]], bool]] = [
         (recipe.stretched, [(n, s) for n, scale in enumerate(scales) if n >= drawn for s in scale], True),
-        (recipe.damaged, list(_damaged(scales[:1], known)) if recipe.damaged else [], False),
+        (recipe.damaged, damaged, False),
         *((recipe.unknown * shares[name], found, False) for name, found in unknown.items()),
     ]
     kinds = [kind for kind in kinds if kind[0] and kind[1]]
@@ -126,12 +129,15 @@ def _unknown(
     each: int,
     drawer: variants.Drawer,
     known: Known,
+    doubtful: set[Rows],
     random: np.random.Generator,
 ) -> Iterator[tuple[int, Shape]]:
-    """Drawings of no class, of every scale in `which`."""
+    """Drawings of no class, of every scale in `which`; none that is a doubtful one at another size."""
+
+    def fits(rows: Rows) -> bool:
+        return not (variants.held_out(rows) or known.is_known(rows) or smallest(rows) in doubtful)
+
     for number in which:
         draw = drawer([shape.rows for shape in scales[number]], random)
-        for rows in variants.draw_until(
-            each, draw, lambda rows: not known.is_known(rows) and not variants.held_out(rows)
-        ):
+        for rows in variants.draw_until(each, draw, fits):
             yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.drawings import Drawings
-from tilenca.shapes import STEPS, Shape, connected
+from tilenca.shapes import STEPS, Shape, removable
 from tilenca.simulate import Conditions, Course, Engine, Simulator, States
 from tilenca.variants import Cell, rows_of
 
@@ -101,7 +101,7 @@ def _walk(drawings: Drawings, old: int, new: int, random: np.random.Generator) -
     while missing := sorted(cell for cell in wanted - tiles if any(near in tiles for near in _around(cell))):
         tiles.add(missing[int(random.integers(len(missing)))])
         yield tuple(sorted(tiles))
-    while extra := [cell for cell in sorted(tiles - wanted) if connected(tiles - {cell})]:
+    while extra := [cell for cell in removable(sorted(tiles)) if cell not in wanted]:
         tiles.remove(extra[int(random.integers(len(extra)))])
         yield tuple(sorted(tiles))
 

@@ -24,10 +24,11 @@ from tilenca.quantise import quantise
 from tilenca.rollout import use_threads
 from tilenca.simulate import FastEngine
 from tilenca.sizes import Sizes
-from tilenca.training import Config, Trainer
+from tilenca.training import Config, Trained, Trainer
 from tilenca.validation import Examiner
 
 CHECKPOINT_EVERY_S = 45.0
+TELL_EVERY_S = 0.2
 CHECK_RUNS = 10  # of each drawing in the measurements during training
 HOLDS_TO_END = 3  # of them in a row in which all targets must hold to end early
 ENDING = (signal.SIGINT, *SIGNALS)
@@ -93,12 +94,12 @@ def make_trainer(job: Job) -> Trainer:
     return trainer
 
 
-def model_of(trainer: Trainer, made: dict[str, object]) -> tuple[Model, int]:
-    """The integer model of what was trained so far, and how many weights had to be cut."""
-    return quantise(trainer.config.dimensions, trainer.config.labels, trainer.arrays(), made)
+def model_of(trained: Trained, made: dict[str, object]) -> tuple[Model, int]:
+    """The integer model of what was trained, and how many weights had to be cut."""
+    return quantise(trained.config.dimensions, trained.config.labels, trained.weights, made)
 
 
-def train(job: Job, tell: Tell) -> Trainer:
+def train(job: Job, tell: Tell) -> Trained:
     """Trains to the end.
 
     Raises:
@@ -119,19 +120,20 @@ def train(job: Job, tell: Tell) -> Trainer:
                 saved = time.monotonic()
             if interrupted():
                 raise InterruptedRunError(f"at iteration {trainer.iteration}")
-            if time.monotonic() - told > 0.2 or trainer.done:
+            if time.monotonic() - told > TELL_EVERY_S or trainer.done:
                 tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
                 told = time.monotonic()
         trainer.save(job.checkpoint)  # measuring takes a while, and can be interrupted too
-        return trainer
+        return trainer.best()
 
 
 def _check(trainer: Trainer, exam: Exam) -> tuple[int, int, float]:
     """A short measurement; ends the training when all targets held several times in a row."""
-    model, _ = model_of(trainer, {})
+    model, _ = model_of(trainer.now(), {})
     rows = list(Examiner(FastEngine(model), exam, CHECK_RUNS, trainer.config.seed).short_rows())
     shortfall = sum(row.shortfall for row in rows)
-    trainer.checks.append((trainer.iteration, shortfall, {row.key: row.share for row in rows}))
+    shares = {row.key: min(other.share for other in rows if other.key == row.key) for row in rows}
+    trainer.measured(shortfall, shares)
     last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
     trainer.ended = len(last) == HOLDS_TO_END and not any(last)
     asked = [row for row in rows if row.target is not None]

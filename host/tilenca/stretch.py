@@ -10,6 +10,8 @@ from itertools import pairwise
 
 Rows = tuple[str, ...]
 
+_BITS = str.maketrans("#.", "10")
+
 
 def stretch(rows: Rows, height: int, width: int, up: bool = True) -> Rows | None:
     """A drawing at another size.
@@ -61,9 +63,14 @@ def smallest(rows: Rows) -> Rows:
 
 
 def _lowest(rows: Rows) -> Rows:
-    while (shorter := next(_without_a_row(rows), None)) is not None:
-        rows = shorter
-    return rows
+    """Without the rows that their neighbours imply; the order in which they go makes no difference."""
+    bits = [int(row.translate(_BITS), 2) for row in rows]
+    kept: list[int] = []
+    for index in range(len(rows)):
+        kept.append(index)
+        while len(kept) > 2 and bits[kept[-2]] == bits[kept[-3]] & bits[kept[-1]]:
+            del kept[-2]
+    return tuple(rows[index] for index in kept)
 
 
 def _without_a_row(rows: Rows) -> Iterator[Rows]:

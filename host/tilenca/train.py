@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,7 +27,7 @@ from tilenca.variants import Known
 
 if TYPE_CHECKING:
     from tilenca.seedrun import Job
-    from tilenca.training import Trainer
+    from tilenca.training import Trained
 
 EXAM_SEED = 1_000_000  # more than any seed of training that anybody types, so that chance is another
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
@@ -137,16 +138,17 @@ def run(args: argparse.Namespace) -> int:
     for failure in failures:
         warn(failure)
     try:
-        job, trainer = _best(jobs, args.seed)
-        model, cut = model_of(trainer, {**made, **job.config.as_json()})
+        trained = _best(jobs, args.seed)
+        model, cut = model_of(trained, {**made, **trained.config.as_json()})
         # Other runs and other random drawings than those that decided when to stop, and for which seed.
         exam_seed = EXAM_SEED + args.seed
         exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), exam_seed)
         metrics = validate(FastEngine(model), exam, plan.validation_runs, exam_seed, warn)
     except KeyboardInterrupt:
         raise _interrupted(args, "while measuring the trained model") from None
-    metrics |= {"weights_cut": cut, "iterations": trainer.iteration, "ended_early": trainer.ended}
-    where = keep(args.out, Result(model, metrics, trainer.history, trainer.checks))
+    metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
+    metrics["kept"] = trained.kept
+    where = keep(args.out, Result(model, metrics, trained.history, trained.checks))
     for path in checkpoints(args.out):
         path.unlink()
     _report(args, where, metrics, time.monotonic() - started)
@@ -216,27 +218,29 @@ def _check_device(device: str) -> None:
         raise UsageError("--device cuda: PyTorch finds no CUDA device here; use --device cpu")
 
 
-def _best(jobs: "list[Job]", exam_seed: int) -> "tuple[Job, Trainer]":
-    """The trained job whose model falls short of its targets least."""
-    from tilenca.seedrun import make_trainer, model_of
+def _best(jobs: "list[Job]", exam_seed: int) -> "Trained":
+    """Of what was trained to its end, that which falls short of its targets least."""
+    from tilenca.seedrun import model_of
     from tilenca.simulate import FastEngine
+    from tilenca.training import trained_at
     from tilenca.validation import Examiner
 
     finished = []
     for job in jobs:
-        if job.checkpoint.exists() and (trainer := make_trainer(replace(job, resume=True))).done:
-            finished.append((job, trainer))
+        with suppress(UsageError):  # what is missing or damaged has been told of
+            finished.append(trained_at(job.checkpoint, job.config))
+    finished = [trained for trained in finished if trained.done]
     if not finished:
         raise TilencaError("no seed was trained to its end; see above, or try another --seed")
     if len(finished) == 1:
         return finished[0]
     shortfalls = []
-    for job, trainer in finished:
-        model, _ = model_of(trainer, {})
-        exam = set_exam(job.task, job.sizes, model.labels, aims_of(job.config.recipe), exam_seed)
+    for trained in finished:
+        model, _ = model_of(trained, {})
+        exam = set_exam(jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), exam_seed)
         rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, exam_seed).short_rows()
         shortfalls.append(sum(row.shortfall for row in rows))
-        warn(f"seed {job.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
+        warn(f"seed {trained.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
     return finished[shortfalls.index(min(shortfalls))]
 
 

@@ -4,7 +4,6 @@ Reads top to bottom: `Trainer.step` is one optimiser step. Everything random com
 whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
 """
 
-import io
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,9 +14,10 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from tilenca.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.curriculum import Curriculum
 from tilenca.drawings import Batch
-from tilenca.errors import TilencaError, UsageError
+from tilenca.errors import TilencaError
 from tilenca.model import TileNet, initial_arrays
 from tilenca.modelfile import Dimensions
 from tilenca.pool import Pools
@@ -50,6 +50,31 @@ class Config:
             "labels": list(self.labels),
             "sources": list(self.sources),
         }
+
+
+@dataclass(frozen=True)
+class Trained:
+    """What a training run has brought.
+
+    Attributes:
+        config: of the run.
+        weights: those to keep, float32 by name, as `Model.floats` wants them.
+        kept: the iteration they are of.
+        iteration: how many it took.
+        ended: whether before the last one, since all targets held.
+        history: (iteration, loss, agreement), means since the row before.
+        checks: (iteration, shortfall, smallest share by kind of question) of the short measurements.
+        done: whether there is nothing left to train.
+    """
+
+    config: Config
+    weights: dict[str, NDArray[np.float32]]
+    kept: int
+    iteration: int
+    ended: bool
+    history: list[tuple[int, float, float]]
+    checks: list[tuple[int, float, dict[str, float]]]
+    done: bool
 
 
 @dataclass(frozen=True)
@@ -87,15 +112,13 @@ class Trainer:
         self.history: list[tuple[int, float, float]] = []  # iteration, and means since the row before
         self.checks: list[tuple[int, float, dict[str, float]]] = []  # iteration, shortfall, shares right
         self._since: list[tuple[float, float]] = []
+        # Of the measured means that which fell short least: iteration, by how much, weights.
+        self._best: tuple[int, float, dict[str, Tensor]] | None = None
 
     @property
     def done(self) -> bool:
         """Whether there is nothing left to train."""
         return self.ended or self.iteration >= self.config.recipe.iterations
-
-    def arrays(self) -> dict[str, NDArray[np.float32]]:
-        """The weights to keep, by name, as `Model.floats` wants them."""
-        return {name: value.cpu().numpy().copy() for name, value in self.average.items()}
 
     def recent(self) -> tuple[float, float]:
         """Mean loss and agreement of the last iterations, for the eye."""
@@ -170,61 +193,80 @@ class Trainer:
             for name, value in self.net.named_parameters():
                 self.average[name].lerp_(value, 1 - keep)
 
-    def save(self, path: Path) -> None:
-        """Writes a checkpoint; an interrupted write leaves the one before.
+    def now(self) -> Trained:
+        """What it has come to."""
+        return self._trained(self.iteration, self.average)
 
-        Raises:
-            OSError: the disk is full or not writable.
-        """
+    def best(self) -> Trained:
+        """What was measured best; what it has come to where nothing was measured."""
+        if self._best is None:
+            return self.now()
+        iteration, _, weights = self._best
+        return self._trained(iteration, weights)
+
+    def measured(self, shortfall: float, shares: dict[str, float]) -> None:
+        """Notes what a measurement of `now()` found."""
+        self.checks.append((self.iteration, shortfall, shares))
+        if self._best is None or shortfall <= self._best[1]:
+            weights = {name: value.clone() for name, value in self.average.items()}
+            self._best = (self.iteration, shortfall, weights)
+
+    def _trained(self, kept: int, tensors: dict[str, Tensor]) -> Trained:
+        weights = {name: value.cpu().numpy().copy() for name, value in tensors.items()}
+        return Trained(
+            self.config,
+            weights,
+            kept,
+            self.iteration,
+            self.ended,
+            self.history,
+            self.checks,
+            self.done,
+        )
+
+    def save(self, path: Path) -> None:
+        """Writes a checkpoint, see `write_checkpoint`."""
         state = {
-            "config": self.config.as_json(),
             "iteration": self.iteration,
             "random": self.random.bit_generator.state,
             "ended": self.ended,
+            "done": self.done,
             "net": self.net.state_dict(),
             "average": self.average,
+            "best": self._best,
             "optimizer": self.optimizer.state_dict(),
             "pools": self.pools.state(),
-            "history": (self.history, self._since, self.checks),
+            "history": self.history,
+            "since": self._since,
+            "checks": self.checks,
         }
-        buffer = io.BytesIO()
-        torch.save(state, buffer)  # into memory: on a full disk torch raises what does not say so
-        partial = path.with_suffix(".part")
-        try:
-            partial.write_bytes(buffer.getbuffer())
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_checkpoint(path, self.config.as_json(), state)
 
     def load(self, path: Path) -> None:
-        """Continues where a checkpoint was written.
-
-        Raises:
-            UsageError: there is none, it is damaged, or of another configuration.
-        """
-        try:
-            state = torch.load(path, map_location=self.device, weights_only=True)
-            config, iteration = state["config"], state["iteration"]
-        except FileNotFoundError as error:
-            raise UsageError(f"{path}: nothing to resume; train without --resume") from error
-        except Exception as error:  # torch raises whatever its unpickler met
-            raise UsageError(
-                f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
-            ) from error
-        mine = self.config.as_json()
-        for key, value in mine.items():
-            if config.get(key) != value:
-                raise UsageError(
-                    f"{path}: made with another {key}; give the arguments of the run to resume, or train "
-                    "into another directory"
-                )
+        """Continues where a checkpoint was written, see `read_checkpoint`."""
+        state = read_checkpoint(path, self.config.as_json(), self.device)
         self.net.load_state_dict(state["net"])
         self.optimizer.load_state_dict(state["optimizer"])
         self.pools.restore(state["pools"])
         self.random.bit_generator.state = state["random"]
-        self.history, self._since, self.checks = ([tuple(row) for row in rows] for rows in state["history"])
-        self.average = state["average"]
-        self.iteration, self.ended = iteration, state["ended"]
+        self.history, self._since, self.checks = (
+            [tuple(row) for row in state[rows]] for rows in ("history", "since", "checks")
+        )
+        self.average, self._best = state["average"], state["best"]
+        self.iteration, self.ended = state["iteration"], state["ended"]
+
+
+def trained_at(path: Path, config: Config) -> Trained:
+    """What a checkpoint holds for the world, without what only training needs.
+
+    Raises:
+        UsageError: see `read_checkpoint`.
+    """
+    state = read_checkpoint(path, config.as_json(), torch.device("cpu"))
+    kept, _, tensors = state["best"] or (state["iteration"], None, state["average"])
+    weights = {name: value.numpy() for name, value in tensors.items()}
+    history, checks = ([tuple(row) for row in state[rows]] for rows in ("history", "checks"))
+    return Trained(config, weights, kept, state["iteration"], state["ended"], history, checks, state["done"])
 
 
 def _all_right(scores: Tensor, target: Tensor, batch: Batch) -> NDArray[np.bool_]:

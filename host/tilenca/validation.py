@@ -19,6 +19,7 @@ MARKS = (10, 30, 60)  # steps after which agreement is reported
 SETTLING = (8, 14)  # steps within which half, and nearly all, of the runs are to settle
 SETTLED = MARKS[-1]  # from here on a wrong tile counts as a lapse
 LONG = 1000
+LEAST_LASTING = 3000  # steps without a lapse, in short measurements; slow drifts show after two thousand
 SCHEDULES: dict[Schedule, str] = {"random": "the paper's sampler", "clock": "the tiles' own clocks"}
 CLOCK = Conditions("clock")
 FaultKind = Literal["dead", "stuck", "away"]
@@ -254,7 +255,7 @@ class Examiner:
         course, chosen = self._run(drawn, CLOCK, LONG, max(1, self.runs // 5))
         name = f"{drawn.name}, {SCHEDULES['clock']}"
         yield self._row("longevity", name, drawn, chosen, course, LONG, TARGETS["long"])
-        steps = 20 * self.runs
+        steps = max(LEAST_LASTING, 20 * self.runs)
         for paper in (self.exam.drawn[0], *self.exam.larger[-1:]):
             each = max(1, -(-self.runs // (5 * len(paper.drawings))))
             course, chosen = self._run(paper, CLOCK, paper.steps + steps, each)

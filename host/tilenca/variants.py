@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from tilenca.shapes import STEPS, cells_of, connected
+from tilenca.shapes import STEPS, cells_of, connected, removable
 from tilenca.stretch import Rows, smallest
 
 Cell = tuple[int, int]
@@ -16,21 +16,19 @@ GIVE_UP = 300  # draws in a row that bring nothing new
 
 def rows_of(cells: Iterable[Cell]) -> Rows:
     """The drawing of these tiles, trimmed."""
-    tiles = set(cells)
-    top, left = min(row for row, _ in tiles), min(col for _, col in tiles)
-    height, width = max(row for row, _ in tiles) - top + 1, max(col for _, col in tiles) - left + 1
-    return tuple(
-        "".join("#" if (top + row, left + col) in tiles else "." for col in range(width))
-        for row in range(height)
-    )
+    rows, cols = zip(*(tiles := list(cells)), strict=True)
+    top, left = min(rows), min(cols)
+    drawing = [bytearray(b"." * (max(cols) - left + 1)) for _ in range(max(rows) - top + 1)]
+    for row, col in tiles:
+        drawing[row - top][col - left] = ord("#")
+    return tuple(row.decode() for row in drawing)
 
 
 def without_one(rows: Rows) -> Iterator[Rows]:
     """The drawing without one of its tiles, for every tile that leaves the others connected."""
     cells = cells_of(rows)
-    for gone in cells:
-        rest = [cell for cell in cells if cell != gone]
-        if rest and connected(rest):
+    for gone in removable(cells):
+        if rest := [cell for cell in cells if cell != gone]:
             yield rows_of(rest)
 
 

@@ -251,6 +251,20 @@ def test_the_emulated_tiles_are_measured_in_the_same_words(
 
 
 @needs_elf
+def test_the_emulated_tiles_agree_when_and_where_the_fast_simulator_does(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["--schedule", "clock", "--steps", "20"]
+    fast = evaluate(capsys, "--engine", "fast", "--runs", "200", *words)
+    emulated = evaluate(capsys, "--engine", "emulator", "--runs", "1", *words)
+    assert emulated["total_agreement"] == fast["total_agreement"] == 1.0
+    for simulated, real in zip(fast["per_shape"], emulated["per_shape"], strict=True):
+        # The boards are switched on within a second; whoever waits for the last one has updated before.
+        least, most = 1, simulated["steps_to_agreement"]["p95"] + 3
+        assert least <= real["steps_to_agreement"]["median"] <= most, real["name"]
+
+
+@needs_elf
 def test_an_image_with_another_model_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model = load_model(paths.DEFAULT_MODEL)
     other = {name: array.copy() for name, array in model.integer.items()}

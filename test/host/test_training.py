@@ -17,13 +17,13 @@ import torch
 from tilenca import cli, paths
 from tilenca.curriculum import Curriculum, labels_of
 from tilenca.drawings import load_drawings, load_training_task
-from tilenca.errors import TilencaError, UsageError
+from tilenca.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.modelfile import Dimensions, load_model
 from tilenca.pool import Pools
 from tilenca.recipes import RECIPES, Recipe
-from tilenca.seedrun import HOLDS_TO_END, Job, make_trainer, train_side_by_side
+from tilenca.seedrun import HOLDS_TO_END, Job, Progress, make_trainer, train_side_by_side
 from tilenca.seedrun import train as train_one
-from tilenca.training import Config, Trainer
+from tilenca.training import Config, Trainer, trained_at
 from tilenca.validation import TARGETS, Target
 
 SMOKE = RECIPES["smoke"]
@@ -96,14 +96,19 @@ def test_another_seed_gives_another_model() -> None:
     assert not np.array_equal(one.net.arrays()["w3"], two.net.arrays()["w3"])
 
 
+@pytest.mark.parametrize("at", [17, 25], ids=["before a measurement", "after one"])
 def test_a_resumed_run_ends_in_the_bytes_of_an_uninterrupted_one(
-    shapes: Path, model: Path, tmp_path: Path
+    at: int, shapes: Path, model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("tilenca.seedrun.TELL_EVERY_S", 0)
+
+    def interrupt(progress: Progress) -> None:
+        if progress.iteration == at:
+            os.kill(os.getpid(), signal.SIGINT)
+
     job = job_of([shapes], tmp_path)
-    first = make_trainer(job)
-    for _ in range(17):
-        first.step()
-    first.save(job.checkpoint)
+    with pytest.raises(InterruptedRunError, match=f"at iteration {at + 1}"):
+        train_one(job, interrupt)
     assert train(shapes, tmp_path, "--resume") == 0
     for name in ("weights.npz", "metrics.json", "history.csv"):
         assert (tmp_path / name).read_bytes() == (model / name).read_bytes(), name
@@ -201,6 +206,22 @@ def test_training_ends_early_once_all_targets_held_several_times(
     assert trainer.iteration == 10 * HOLDS_TO_END
 
 
+def test_what_was_measured_best_is_kept(tmp_path: Path) -> None:
+    job = job_of([paths.DEFAULT_SHAPES], tmp_path)
+    learner = make_trainer(job)
+    for shortfall in (0.5, 0.25, 0.75):
+        learner.step()
+        learner.measured(shortfall, {})
+        if shortfall == 0.25:
+            wanted = learner.now().weights
+    learner.save(job.checkpoint)
+    for trained in (learner.best(), trained_at(job.checkpoint, job.config)):
+        assert trained.kept == 2
+        for name, weights in trained.weights.items():
+            assert np.array_equal(weights, wanted[name])
+    assert not np.array_equal(learner.now().weights["w3"], wanted["w3"])
+
+
 def test_a_model_says_how_it_was_made(model: Path) -> None:
     made = load_model(model).made
     assert (made["recipe_name"], made["seed"], made["recipe"]["iterations"]) == ("smoke", 5, 40)
@@ -226,6 +247,15 @@ def test_loss_that_is_not_a_number_stops_training() -> None:
         next(learner.net.parameters())[0, 0] = torch.nan
     with pytest.raises(TilencaError, match=r"loss is nan at iteration 1.*--seed"):
         learner.step()
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="PyTorch finds no CUDA device here")
+def test_a_gpu_trains_the_same_but_for_rounding(tmp_path: Path) -> None:
+    job = job_of([paths.DEFAULT_SHAPES], tmp_path)
+    learners = [make_trainer(replace(job, device=device)) for device in ("cpu", "cuda")]
+    for _ in range(3):
+        losses = [learner.step().loss for learner in learners]
+        assert losses[1] == pytest.approx(losses[0], rel=1e-3)
 
 
 def test_pools_hold_states_of_their_drawings_only() -> None:

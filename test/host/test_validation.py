@@ -112,7 +112,7 @@ def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> 
     assert len(said) == len(metrics["rows"])
     assert all(0 <= row["low"] <= row["share"] <= row["high"] <= 1 for row in metrics["rows"])
     model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
-    card = render_card(model, {**metrics, "weights_cut": 0, "iterations": 10, "ended_early": True})
+    card = render_card(model, {**metrics, "weights_cut": 0, "iterations": 10, "kept": 8, "ended_early": True})
     for line in metrics["rows"]:
         assert line["name"] in card
     assert model.made["command"] in card
@@ -128,7 +128,7 @@ def a_result(model: Model, shortfall: float) -> Result:
         "targets_held": "0 of 1",
         "shortfall": shortfall,
     }
-    metrics |= {"weights_cut": 0, "iterations": 1, "ended_early": False}
+    metrics |= {"weights_cut": 0, "iterations": 1, "kept": 1, "ended_early": False}
     model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
     return Result(
         model,

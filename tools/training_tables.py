@@ -1,0 +1,133 @@
+"""Writes the tables of docs/TRAINING.md from the shipped models' metrics: tools/training_tables.py [--check].
+
+Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
+"""
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from tilenca import fit, paths
+from tilenca.modelfile import load_model
+
+DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
+MODELS = paths.ROOT / "models"
+WIDTHS = ("digits-40", "digits-64", "digits")  # trained by the same recipe
+TASKS = ("hex", "letters", "pentominoes")
+# Of the rows of a width or a task: a short name, and how the row's name ends, with its steps.
+ROWS = {
+    "5x4 @60": ("the tiles' own clocks", 60),
+    "@1000": ("the tiles' own clocks", 1000),
+    "12x10 @100": ("12x10", 100),
+    "20x16 @200": ("20x16, never trained on", 200),
+    "changes": ("changes to every other class at once", 60),
+    "half of the messages lost": ("50 % of the messages lost, last one held", 60),
+    "one tile missing": ("one tile missing, where that leaves no doubt about the class", 60),
+    "random drawings": ("random drawings, never trained on", 60),
+    "other strokes": ("other choices of the same strokes, never trained on", 60),
+}
+
+Row = dict[str, Any]
+
+
+def metrics_of(model: str) -> dict[str, Any]:
+    """The metrics of a shipped model."""
+    metrics: dict[str, Any] = json.loads((MODELS / model / "metrics.json").read_text(encoding="utf-8"))
+    return metrics
+
+
+def share(model: str, wanted: tuple[str, int]) -> str:
+    """The share of the first row whose name ends so."""
+    ending, steps = wanted
+    for row in metrics_of(model)["rows"]:
+        if row["name"].endswith(ending) and row["steps"] == steps:
+            return f"{row['share']:.3f}"
+    return ""
+
+
+def digits() -> Iterator[list[str]]:
+    """Every row of the digits' model, with the paper's recipe beside it."""
+    yield [
+        "digits, share of runs with every tile right",
+        "after steps",
+        "the paper's recipe",
+        "`models/digits`",
+        "target",
+    ]
+    for row in metrics_of("digits")["rows"]:
+        if row["key"] == "drawings" and row["steps"] == 10:
+            continue
+        target = "" if row["target"] is None else f"{row['target']:.3f}{'' if row['holds'] else ' missed'}"
+        name = re.sub(r"digits(-(\w+))?\.toml", lambda match: match[2] or "5x4", row["name"])
+        paper = share("paper", (row["name"], row["steps"]))
+        yield [name, str(row["steps"]), paper, f"{row['share']:.3f}", target]
+
+
+def compared(models: tuple[str, ...]) -> Iterator[list[str]]:
+    """One line a model: what it costs a tile and how it does."""
+    names = [
+        name
+        for name, wanted in ROWS.items()
+        if any(share(model, wanted) for model in models if (MODELS / model).exists())
+    ]
+    yield ["model", "state", "hidden", "flash", "work per update", "targets held", *names]
+    for name in models:
+        model = load_model(MODELS / name)
+        costs = fit.check(model.dimensions, len(model.labels)).as_json()
+        yield [
+            f"[{name}](../models/{name}/README.md)",
+            str(costs["channels"]),
+            str(costs["hidden1"]),
+            f"{costs['flash_bytes']:,} bytes",
+            f"{costs['update_ms']} ms",
+            str(metrics_of(name)["targets_held"]),
+            *(share(name, ROWS[column]) for column in names),
+        ]
+
+
+TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
+    "digits": digits,
+    "widths": lambda: compared(WIDTHS),
+    "tasks": lambda: compared(TASKS),
+}
+
+
+def rendered(text: str) -> str:
+    """The document with its tables made anew.
+
+    Raises:
+        ValueError: it has no place for one of them.
+    """
+    for name, rows in TABLES.items():
+        lines = [f"| {' | '.join(row)} |" for row in rows()]
+        lines.insert(1, "|---" * (lines[0].count(" | ") + 1) + "|")
+        table = "\n".join((f"<!-- {name} -->", *lines, f"<!-- /{name} -->"))
+        before, begin, rest = text.partition(f"<!-- {name} -->")
+        _, end, after = rest.partition(f"<!-- /{name} -->")
+        if not (begin and end):
+            raise ValueError(f"{DOCUMENT}: no place <!-- {name} --> for a table")
+        text = before + table + after
+    return text
+
+
+def main() -> int:
+    """Writes the document; with --check exits 1 where it differs."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where tables differ")
+    args = parser.parse_args()
+    before = Path(DOCUMENT).read_text(encoding="utf-8")
+    after = rendered(before)
+    if args.check:
+        if before != after:
+            print(f"{DOCUMENT}: tables differ from the models' metrics; run {__file__}", file=sys.stderr)
+        return int(before != after)
+    DOCUMENT.write_text(after, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
