@@ -33,17 +33,17 @@ ACTIVE = (1.0, 0.6, 0.4)
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the
 # emulated chip and fitted by `python tools/cycles.py`, which prints them anew when the firmware changes.
-CYCLES_PER_MAC = 8.438
-CYCLES_PER_SKIPPED = 1.5092
-CYCLES_PER_CHANNEL = 2781.1
-CYCLES_PER_UPDATE = 44412.0
-CYCLES_PER_MS = 1770.2  # updating or not
+CYCLES_PER_MAC = 8.2825
+CYCLES_PER_SKIPPED = 1.5513
+CYCLES_PER_CHANNEL = 2555.3
+CYCLES_PER_UPDATE = 44356.0
+CYCLES_PER_MS = 2313.4  # updating or not
 
 CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10
 FRAMING_BYTES = 2  # COBS and the delimiter
 # The part of the time that stays free at the shortest period; clocks drift, and telemetry comes in bursts.
-HEAD_ROOM = 0.1
+HEAD_ROOM = 0.08
 
 
 @dataclass(frozen=True)
