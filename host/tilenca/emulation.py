@@ -11,9 +11,16 @@ from typing import Any
 
 from tilenca.emulate_faults import Faults, FaultSpec
 from tilenca.emulator import EAST, EEPROM_BYTES, SOUTH, Array, EmulatedTile, Link
-from tilenca.errors import TilencaError, UsageError
+from tilenca.errors import TilencaError, UsageError, image_error
 from tilenca.glyphs import label_of_glyph
-from tilenca.protocol import HelloSentence, LinkSentence, Settings, TileSentence, settings_block
+from tilenca.protocol import (
+    HelloSentence,
+    LinkSentence,
+    OtherVersionSentence,
+    Settings,
+    TileSentence,
+    settings_block,
+)
 from tilenca.shapes import Shape, Task, opposite
 from tilenca.telemetry import Heard, LineReader
 
@@ -71,7 +78,8 @@ def firmware_settings(elf: Path) -> Settings | None:
     """The settings a firmware has when its EEPROM is empty, asked of one tile; None if it does not say hello.
 
     Raises:
-        BuildError, UsageError: the image cannot be used, or the emulator is not built.
+        BuildError, UsageError: the image cannot be used or speaks another version of the protocol, or the
+            emulator is not built.
         TilencaError: the firmware stopped at a fault.
     """
     reader = LineReader()
@@ -79,8 +87,11 @@ def firmware_settings(elf: Path) -> Settings | None:
         while array.time_s < HELLO_S:
             array.run(SLICE_S)
             for _, sentence in reader.feed(array[0].read_serial()):
+                if isinstance(sentence, OtherVersionSentence):
+                    raise image_error(f"{elf}: {sentence.remedy}")
                 if isinstance(sentence, HelloSentence):
-                    return Settings(sentence.tile, sentence.period_ms, sentence.updates)
+                    pace = sentence.period_ms, sentence.updates
+                    return Settings(sentence.tile, *pace, sentence.brightness)
     return None
 
 
@@ -264,6 +275,7 @@ class Emulation:
         return {
             "shape": self.shape.name,
             "model_id": self.hello and f"{self.hello.model_id:04X}",
+            "firmware_id": self.hello and f"{self.hello.firmware_id:08X}",
             "simulated_s": round(self.array.time_s, 6),
             "wall_s": round(wall_s, 3),
             "tiles": [self._tile_report(tile) for tile in self.array],

@@ -6,13 +6,12 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from tilenca.protocol import HelloSentence, LinkSentence, Sentence, TileSentence
 from tilenca.tables import table
 from tilenca.telemetry import Event, Fleet, PortNews, TileView, type_of
+from tilenca.wording import printable, words
 
 # A tile that said nothing for so long, and for two of its periods where we know them, may be in trouble.
 QUIET_S = 3.0
-SHOWN_BYTES = 60
 
 
 def clock_text(time_s: float) -> str:
@@ -28,26 +27,7 @@ def log_line(event: Event) -> str:
         return f"{head} - PORT {'open' if event.is_open else event.reason}"
     if event.sentence is None:
         return f"{head} - DAMAGED {printable(event.raw)}"
-    return f"{head} tile {event.sentence.tile} {type_of(event.sentence)} {_words(event.sentence)}"
-
-
-def printable(raw: bytes) -> str:
-    """Bytes as text that cannot disturb a terminal, cut to a readable length."""
-    text = repr(raw[:SHOWN_BYTES])[2:-1]
-    return text if len(raw) <= SHOWN_BYTES else f"{text}... ({len(raw)} bytes)"
-
-
-def _words(sentence: Sentence) -> str:
-    match sentence:
-        case TileSentence(_, uptime_ms, updates, label, links, _):
-            return f"shows {label or 'nothing'} update {updates} up {uptime_ms / 1000:.1f} s links {links}"
-        case LinkSentence(_, _, side, sent, received, corrupt, lost, foreign, age_ms):
-            counts = f"sent {sent} received {received} corrupt {corrupt} lost {lost} foreign {foreign}"
-            return f"{side} {counts} age {'never' if age_ms is None else f'{age_ms} ms'}"
-        case HelloSentence(version, _, model_id, channels, classes, period_ms, updates, reset_cause):
-            model = f"model {model_id:04X} ({channels} channels, {classes} classes)"
-            limit = f"{updates} updates" if updates else "for ever"
-            return f"protocol {version} {model} every {period_ms} ms {limit} reset cause {reset_cause:02X}"
+    return f"{head} tile {event.sentence.tile} {type_of(event.sentence)} {words(event.sentence)}"
 
 
 HEADER = (
@@ -71,7 +51,9 @@ def cells(view: TileView, now_s: float) -> list[str]:
     age_s = None if view.heard_s is None else max(now_s - view.heard_s, 0.0)
     state = view.tile
     counters = [view.total(counter) for counter in ("received", "corrupt", "lost")]
-    note = view.reason or ("silent" if view.is_open and (age_s is None or age_s > _patience_s(view)) else "")
+    quiet = view.is_open and (age_s is None or age_s > _patience_s(view))
+    note = view.reason or (f"speaks protocol {view.other_version}: flash it" if view.other_version else "")
+    note = note or ("silent" if quiet else "") or (view.error.code if view.error else "")
     return [
         view.port,
         _or_dash(view.tile_id),

@@ -1,5 +1,6 @@
 """Intel HEX images, checked before anything is written to a board."""
 
+import binascii
 from pathlib import Path
 
 from tilenca.errors import image_error
@@ -58,6 +59,15 @@ def _record(number: int, line: str) -> tuple[int, int, bytes]:
     if sum(raw) & 0xFF:
         raise HexError(f"{number}: wrong checksum")
     return int.from_bytes(raw[1:3], "big"), raw[3], raw[4:-1]
+
+
+def firmware_id(memory: dict[int, int]) -> int:
+    """What a tile that runs this image calls its firmware: CRC-32 of its flash up to the image's last byte.
+
+    Args:
+        memory: the image, as `parse_hex` gives it; what it leaves out is erased flash, 0xFF.
+    """
+    return binascii.crc32(bytes(memory.get(address, 0xFF) for address in range(max(memory, default=-1) + 1)))
 
 
 def check_image(path: Path) -> int:

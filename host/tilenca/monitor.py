@@ -19,7 +19,7 @@ from tilenca.errors import NoDeviceError
 from tilenca.fleetview import live_table, log_line, summary
 from tilenca.portreader import PortReader
 from tilenca.ports import MAGIC, Port, find_ports
-from tilenca.protocol import HelloSentence
+from tilenca.protocol import ErrorSentence, HelloSentence, OtherVersionSentence
 from tilenca.recording import Recorder, format_event, paced, read_recording
 from tilenca.streams import warn
 from tilenca.telemetry import Event, Fleet, Heard, PortNews, as_json
@@ -180,7 +180,9 @@ class _LiveTable:
 
 
 def _remarkable(event: Event) -> bool:
-    return isinstance(event, PortNews) or event.sentence is None or isinstance(event.sentence, HelloSentence)
+    if isinstance(event, PortNews) or event.sentence is None:
+        return True
+    return isinstance(event.sentence, HelloSentence | ErrorSentence | OtherVersionSentence)
 
 
 def _display(fleet: Fleet, stack: ExitStack) -> Display:

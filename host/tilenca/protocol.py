@@ -1,21 +1,20 @@
-"""Every byte that leaves a tile: docs/PROTOCOL.md in Python, twin of the firmware's core and app.
+"""Every byte that leaves a tile or reaches it: docs/PROTOCOL.md in Python, twin of core and app.
 
 Constants have the names they have in C++: `kMaxSentence` there is `MAX_SENTENCE` here. Pure standard library,
-no port, no clock: bytes go in, frames and sentences come out.
+no port, no clock: bytes go in, sentences come out. `tilenca.frames` has the frames between tiles.
 """
 
 import binascii
-import enum
 import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 KIND_STATE = 0
 
 # Frames between tiles (section 1).
 LINK_BAUD = 38400
-HEADER_SIZE = 4
+HEADER_SIZE = 5
 CRC_SIZE = 2
 MAX_CHANNELS = 51
 MAX_PAYLOAD = HEADER_SIZE + MAX_CHANNELS + CRC_SIZE
@@ -34,11 +33,23 @@ HOST_BAUD = 115200
 MAX_SENTENCE = 200
 SIDE_LETTERS = "NESW"
 
+# Commands (section 6).
+MAX_COMMAND = 64
+MAX_BLINK_S = 60
+
 # Settings in EEPROM (section 5).
-SETTINGS_SIZE = 10
-SETTINGS_VERSION = 1
+SETTINGS_SIZE = 12
+SETTINGS_VERSION = 2
 MIN_PERIOD_MS = 10
 MAX_PERIOD_MS = 10000
+MAX_BRIGHTNESS = 255
+SETTING_RANGES = {
+    "id": (0, 255),
+    "period": (MIN_PERIOD_MS, MAX_PERIOD_MS),
+    "updates": (0, 0xFFFF),
+    "brightness": (0, MAX_BRIGHTNESS),
+}
+PRESETS = ("paper", "default")
 
 
 def crc16(data: bytes) -> int:
@@ -46,113 +57,17 @@ def crc16(data: bytes) -> int:
     return binascii.crc_hqx(data, 0xFFFF)
 
 
-def cobs_encode(payload: bytes) -> bytes:
-    """`payload` without any zero byte in it (Cheshire & Baker, 1999); the delimiter is not appended.
-
-    Frames are far shorter than COBS's longest block, so that every block but the last stands for one zero.
-
-    Raises:
-        ValueError: the payload has more than MAX_PAYLOAD bytes.
-    """
-    if len(payload) > MAX_PAYLOAD:
-        raise ValueError(f"payload of {len(payload)} bytes; a frame has at most {MAX_PAYLOAD}")
-    return b"".join(bytes([len(block) + 1]) + block for block in payload.split(b"\0"))
-
-
-def cobs_decode(encoded: bytes) -> bytes | None:
-    """The payload that `cobs_encode` encoded, or None if no payload of that size does."""
-    if not 0 < len(encoded) <= MAX_PAYLOAD + 1 or 0 in encoded:
-        return None
-    blocks = []
-    at = 0
-    while at < len(encoded):
-        end = at + encoded[at]
-        if end > len(encoded):
-            return None
-        blocks.append(encoded[at + 1 : end])
-        at = end
-    return b"\0".join(blocks)
-
-
-@dataclass(frozen=True)
-class Frame:
-    """The state one tile tells one neighbour.
-
-    Attributes:
-        sequence: 0..255, +1 for every frame sent on this side.
-        model_id: 0..0xFFFF, of the sender's model.
-        messages: one per channel, each -127..127, in units of 2^-6.
-    """
-
-    sequence: int
-    model_id: int
-    messages: tuple[int, ...]
-
-
-def encode_payload(frame: Frame) -> bytes:
-    """The frame's payload with its CRC, as it was before COBS."""
-    head = bytes([PROTOCOL_VERSION << 4 | KIND_STATE, frame.sequence]) + frame.model_id.to_bytes(2, "little")
-    body = head + bytes(message + MESSAGE_OFFSET for message in frame.messages)
-    return body + crc16(body).to_bytes(CRC_SIZE, "little")
-
-
-def encode_frame(frame: Frame) -> bytes:
-    """The frame as it goes on the wire, delimiter included."""
-    return cobs_encode(encode_payload(frame)) + b"\0"
-
-
-def decode_payload(payload: bytes, channels: int) -> Frame | None:
-    """The frame in a payload of `channels` messages, or None if it fails any check."""
-    body, crc = payload[:-CRC_SIZE], payload[-CRC_SIZE:]
-    if len(payload) != HEADER_SIZE + channels + CRC_SIZE or crc16(body) != int.from_bytes(crc, "little"):
-        return None
-    if body[0] != PROTOCOL_VERSION << 4 | KIND_STATE or 0 in body[HEADER_SIZE:]:
-        return None
-    messages = tuple(byte - MESSAGE_OFFSET for byte in body[HEADER_SIZE:])
-    return Frame(body[1], int.from_bytes(body[2:4], "little"), messages)
-
-
-class FrameDecoder:
-    """Receives one byte at a time and says when a whole, checked frame has arrived.
-
-    Attributes:
-        frame: the last good frame; None before the first.
-    """
-
-    class Result(enum.Enum):
-        """What one byte brought."""
-
-        PENDING = "pending"
-        READY = "ready"
-        CORRUPT = "corrupt"
-
-    def __init__(self, channels: int) -> None:
-        """Expects frames of `channels` messages."""
-        self.frame: Frame | None = None
-        self._channels = channels
-        self._encoded = bytearray()
-
-    def feed(self, byte: int) -> Result:
-        """Takes the next byte of the line; `frame` is new whenever the answer is READY."""
-        if byte != 0:
-            # One byte more than fits is kept, so that a sequence too long never passes for a shorter one.
-            if len(self._encoded) <= HEADER_SIZE + self._channels + CRC_SIZE + 1:
-                self._encoded.append(byte)
-            return self.Result.PENDING
-        if not self._encoded:
-            return self.Result.PENDING
-        payload = cobs_decode(bytes(self._encoded))
-        self._encoded.clear()
-        frame = None if payload is None else decode_payload(payload, self._channels)
-        if frame is None:
-            return self.Result.CORRUPT
-        self.frame = frame
-        return self.Result.READY
-
-
 @dataclass(frozen=True)
 class HelloSentence:
-    """What a tile says at boot; `tile` 0 means that no id was set, `updates` 0 for ever."""
+    """What a tile says at boot and when asked.
+
+    Attributes:
+        tile: its id; 0: none was set.
+        updates: after so many it stops; 0: never.
+        reset_cause: MCUSR, as far as the tile knows it.
+        firmware_id: CRC-32 of the image in its flash, see `tilenca.ihex.firmware_id`.
+        brightness: 0..255.
+    """
 
     version: int
     tile: int
@@ -162,6 +77,8 @@ class HelloSentence:
     period_ms: int
     updates: int
     reset_cause: int
+    firmware_id: int
+    brightness: int
 
 
 @dataclass(frozen=True)
@@ -183,7 +100,14 @@ class TileSentence:
 
 @dataclass(frozen=True)
 class LinkSentence:
-    """How one side's link does; `age_ms` of the last good frame is None before the first."""
+    """How one side's link does.
+
+    Attributes:
+        age_ms: of the last good frame; None before the first, as are the next two.
+        overruns: bytes or edges lost for want of room.
+        neighbour: id of the tile that sent the last good frame; 0 if it has none.
+        neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
+    """
 
     tile: int
     uptime_ms: int
@@ -194,9 +118,86 @@ class LinkSentence:
     lost: int
     foreign: int
     age_ms: int | None
+    overruns: int
+    neighbour: int | None
+    neighbour_side: str | None
 
 
-Sentence: TypeAlias = HelloSentence | TileSentence | LinkSentence
+@dataclass(frozen=True)
+class TimeSentence:
+    """Where a tile's time and memory go.
+
+    Attributes:
+        compute_us: the longest computation of an update since the last such sentence.
+        awake_permille: share of the time since then that the main loop did not sleep.
+        gap_us: the longest time from one turn of the main loop to the next since then.
+        stack_unused: bytes of the stack's room that were never used so far.
+        dropped: sentences dropped since boot, for want of room.
+    """
+
+    tile: int
+    uptime_ms: int
+    compute_us: int
+    awake_permille: int
+    gap_us: int
+    stack_unused: int
+    dropped: int
+
+
+@dataclass(frozen=True)
+class ErrorSentence:
+    """Something is wrong with a tile: a code word, and a text for people."""
+
+    tile: int
+    uptime_ms: int
+    code: str
+    text: str
+
+
+@dataclass(frozen=True)
+class AckSentence:
+    """A command was carried out: its name, and its fields as now in force."""
+
+    tile: int
+    command: str
+    fields: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class NakSentence:
+    """A command was not carried out; `command` is empty where the tile could not tell which it was."""
+
+    tile: int
+    reason: str
+    command: str = ""
+
+
+@dataclass(frozen=True)
+class OtherVersionSentence:
+    """A good sentence of a tile that speaks another version of the protocol than we do."""
+
+    version: int
+    tile: int
+
+    @property
+    def remedy(self) -> str:
+        """What it is and what to do about it."""
+        return (
+            f"speaks protocol {self.version}, these tools speak {PROTOCOL_VERSION}: "
+            "flash it with the firmware that belongs to them (tilenca flash)"
+        )
+
+
+Sentence: TypeAlias = (
+    HelloSentence
+    | TileSentence
+    | LinkSentence
+    | TimeSentence
+    | ErrorSentence
+    | AckSentence
+    | NakSentence
+    | OtherVersionSentence
+)
 
 
 def checksum(body: bytes) -> int:
@@ -207,28 +208,63 @@ def checksum(body: bytes) -> int:
     return result
 
 
-def format_sentence(sentence: Sentence) -> bytes:
-    """The sentence as a tile writes it, CR LF included."""
-    match sentence:
-        case HelloSentence(version, tile, model_id, channels, classes, period_ms, updates, reset_cause):
-            about = f"{version},{tile},{model_id:04X},{channels},{classes}"
-            text = f"HELLO,{about},{period_ms},{updates},{reset_cause:02X}"
-        case TileSentence(tile, uptime_ms, updates, label, links, state):
-            text = f"TILE,{tile},{uptime_ms},{updates},{label},{links},{state.hex().upper()}"
-        case LinkSentence(tile, uptime_ms, side, sent, received, corrupt, lost, foreign, age_ms):
-            age = "" if age_ms is None else age_ms
-            text = f"LINK,{tile},{uptime_ms},{side},{sent},{received},{corrupt},{lost},{foreign},{age}"
+def framed(text: str) -> bytes:
+    """`text` as a sentence on the wire: between `$` and `*`, with checksum and CR LF."""
     body = text.encode("ascii")
     return b"$%s*%02X\r\n" % (body, checksum(body))
 
 
+def format_sentence(sentence: Sentence) -> bytes:
+    """The sentence as a tile writes it, CR LF included.
+
+    Raises:
+        ValueError: of another version's sentences only the version is known.
+    """
+    fields: tuple[object, ...]
+    match sentence:
+        case HelloSentence() as hello:
+            fields = (
+                f"HELLO,{hello.version}",
+                hello.tile,
+                f"{hello.model_id:04X},{hello.channels},{hello.classes},{hello.period_ms},{hello.updates}",
+                f"{hello.reset_cause:02X},{hello.firmware_id:08X},{hello.brightness}",
+            )
+        case TileSentence(tile, uptime_ms, updates, label, links, state):
+            fields = ("TILE", tile, uptime_ms, updates, label, links, state.hex().upper())
+        case LinkSentence():
+            fields = ("LINK", *("" if value is None else value for value in vars(sentence).values()))
+        case TimeSentence():
+            fields = ("TIME", *vars(sentence).values())
+        case ErrorSentence(tile, uptime_ms, code, text):
+            fields = ("ERROR", tile, uptime_ms, code, text)
+        case AckSentence(tile, command, values):
+            fields = ("ACK", tile, command, *values)
+        case NakSentence(tile, reason, command):
+            fields = ("NAK", tile, reason, command)
+        case OtherVersionSentence(version):
+            raise ValueError(f"protocol {version} is not spoken here")
+    return framed(",".join(map(str, fields)))
+
+
+def _fields(*parts: str) -> re.Pattern[str]:
+    return re.compile(",".join(parts))
+
+
 _SENTENCE = re.compile(rb"\$([ -#%-)+-~]*)\*([0-9A-F]{2})")
-_DECIMAL = r"(\d{1,10})"
-_DECIMALS_4, _DECIMALS_5 = ",".join([_DECIMAL] * 4), ",".join([_DECIMAL] * 5)
-_HELLO = re.compile(rf"HELLO,{_DECIMAL},{_DECIMAL},([0-9A-F]{{4}}),{_DECIMALS_4},([0-9A-F]{{2}})")
+_NUMBER, _OPTIONAL, _SIDE = r"(\d{1,10})", r"(\d{0,10})", rf"([{SIDE_LETTERS}])"
+_WORD, _TEXT = r"([A-Z]{1,16})", r"([ -+\--~]*)"
+_HEX2, _HEX4, _HEX8 = (rf"([0-9A-F]{{{digits}}})" for digits in (2, 4, 8))
+_HELLO = _fields("HELLO", *[_NUMBER] * 2, _HEX4, *[_NUMBER] * 4, _HEX2, _HEX8, _NUMBER)
 _STATE = rf"((?:[0-9A-F]{{2}}){{1,{MAX_CHANNELS}}})"
-_TILE = re.compile(rf"TILE,{_DECIMAL},{_DECIMAL},{_DECIMAL},([!-+\--~]?),([N-][E-][S-][W-]),{_STATE}")
-_LINK = re.compile(rf"LINK,{_DECIMAL},{_DECIMAL},([{SIDE_LETTERS}]),{_DECIMALS_5},(\d{{0,10}})")
+_TILE = _fields("TILE", *[_NUMBER] * 3, r"([!-+\--~]?)", r"([N-][E-][S-][W-])", _STATE)
+_LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
+_TIME = _fields("TIME", *[_NUMBER] * 7)
+_ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
+_ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")
+_NAK = _fields("NAK", _NUMBER, _WORD, _TEXT)
+# Sentences of other versions: any greeting, and the link report of version 1, for who joins later.
+_OTHER_HELLO = re.compile(rf"HELLO,{_NUMBER},{_NUMBER}(?:,.*)?")
+_LINK_1 = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL)
 
 
 def parse_sentence(line: bytes | str) -> Sentence | None:
@@ -241,19 +277,109 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
     if match is None or checksum(match[1]) != int(match[2], 16):
         return None
     text = match[1].decode("ascii")
-    if hello := _HELLO.fullmatch(text):
-        version, tile, model_id, channels, classes, period_ms, updates, cause = hello.groups()
+    parse = _PARSERS.get(text.partition(",")[0])
+    return parse(text) if parse else None
+
+
+def _hello(text: str) -> Sentence | None:
+    if (found := _HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
+        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
+            found.groups()
+        )
         numbers = int(channels), int(classes), int(period_ms), int(updates)
-        return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, int(cause, 16))
-    if report := _TILE.fullmatch(text):
-        tile, uptime_ms, updates, label, links, state = report.groups()
-        return TileSentence(int(tile), int(uptime_ms), int(updates), label, links, bytes.fromhex(state))
-    if link := _LINK.fullmatch(text):
-        tile, uptime_ms, side, *counters, age_ms = link.groups()
-        sent, received, corrupt, lost, foreign = map(int, counters)
-        age = int(age_ms) if age_ms else None
-        return LinkSentence(int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign, age)
+        ids = int(cause, 16), int(firmware, 16), int(light)
+        return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
+    if (found := _OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
+        return OtherVersionSentence(int(found[1]), int(found[2]))
     return None
+
+
+def _tile(text: str) -> Sentence | None:
+    if (found := _TILE.fullmatch(text)) is None:
+        return None
+    tile, uptime_ms, updates, label, links, state = found.groups()
+    return TileSentence(int(tile), int(uptime_ms), int(updates), label, links, bytes.fromhex(state))
+
+
+def _link(text: str) -> Sentence | None:
+    if found := _LINK.fullmatch(text):
+        tile, uptime_ms, side, *counts, age, overruns, neighbour, neighbour_side = found.groups()
+        sent, received, corrupt, lost, foreign = map(int, counts)
+        return LinkSentence(
+            int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign,
+            int(age) if age else None, int(overruns), int(neighbour) if neighbour else None, neighbour_side,
+        )  # fmt: skip
+    return OtherVersionSentence(1, int(found[1])) if (found := _LINK_1.fullmatch(text)) else None
+
+
+def _time(text: str) -> Sentence | None:
+    return TimeSentence(*map(int, found.groups())) if (found := _TIME.fullmatch(text)) else None
+
+
+def _error(text: str) -> Sentence | None:
+    found = _ERROR.fullmatch(text)
+    return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
+
+
+def _ack(text: str) -> Sentence | None:
+    if (found := _ACK.fullmatch(text)) is None:
+        return None
+    return AckSentence(int(found[1]), found[2], tuple(found[3].split(",")[1:]))
+
+
+def _nak(text: str) -> Sentence | None:
+    found = _NAK.fullmatch(text)
+    return NakSentence(int(found[1]), found[2], found[3]) if found else None
+
+
+_PARSERS = {
+    "HELLO": _hello,
+    "TILE": _tile,
+    "LINK": _link,
+    "TIME": _time,
+    "ERROR": _error,
+    "ACK": _ack,
+    "NAK": _nak,
+}
+
+
+def ask_command() -> bytes:
+    """Asks a tile for its HELLO."""
+    return framed("ASK")
+
+
+def set_command(name: str, value: int | str) -> bytes:
+    """Tells a tile to keep a setting: `id`, `period` (ms), `updates`, `brightness`, or `preset`.
+
+    Raises:
+        ValueError: there is no such setting, or the value is out of its range.
+    """
+    if name == "preset":
+        if value not in PRESETS:
+            raise ValueError(f"preset {value}: there are {' and '.join(PRESETS)}")
+    elif name not in SETTING_RANGES:
+        raise ValueError(f"no setting '{name}': there are {', '.join(SETTING_RANGES)} and preset")
+    else:
+        low, high = SETTING_RANGES[name]
+        if not isinstance(value, int) or not low <= value <= high:
+            raise ValueError(f"{name} {value}: must be {low}..{high}")
+    return framed(f"SET,{name},{value}")
+
+
+def blink_command(seconds: int) -> bytes:
+    """Lets a tile's face blink so long, 0..MAX_BLINK_S; 0 ends it.
+
+    Raises:
+        ValueError: out of range.
+    """
+    if not 0 <= seconds <= MAX_BLINK_S:
+        raise ValueError(f"blink {seconds}: must be 0..{MAX_BLINK_S} seconds")
+    return framed(f"BLINK,{seconds}")
+
+
+def restart_command() -> bytes:
+    """Lets a tile begin again from the seed, as its button does."""
+    return framed("RESTART")
 
 
 @dataclass(frozen=True)
@@ -263,30 +389,31 @@ class Settings:
     tile_id: int
     period_ms: int
     updates: int
+    brightness: int = MAX_BRIGHTNESS
 
 
-def settings_block(tile_id: int, period_ms: int, updates: int) -> bytes:
+def settings_block(tile_id: int, period_ms: int, updates: int, brightness: int = MAX_BRIGHTNESS) -> bytes:
     """The block of docs/PROTOCOL.md section 5 that a tile reads from EEPROM address 0.
 
     Raises:
         ValueError: a value is out of range.
     """
-    if not (0 <= tile_id <= 255 and MIN_PERIOD_MS <= period_ms <= MAX_PERIOD_MS and 0 <= updates <= 0xFFFF):
-        raise ValueError(
-            f"tile id {tile_id}, period {period_ms} ms, {updates} updates: must be 0..255, "
-            f"{MIN_PERIOD_MS}..{MAX_PERIOD_MS} ms and 0..65535"
-        )
+    values = {"id": tile_id, "period": period_ms, "updates": updates, "brightness": brightness}
+    for name, value in values.items():
+        low, high = SETTING_RANGES[name]
+        if not low <= value <= high:
+            raise ValueError(f"{name} {value}: must be {low}..{high}")
     body = b"TN" + bytes([SETTINGS_VERSION, tile_id])
-    body += period_ms.to_bytes(2, "little") + updates.to_bytes(2, "little")
+    body += period_ms.to_bytes(2, "little") + updates.to_bytes(2, "little") + bytes([brightness, 0])
     return body + crc16(body).to_bytes(CRC_SIZE, "little")
 
 
 def parse_settings(block: bytes) -> Settings | None:
     """The settings in a block of SETTINGS_SIZE bytes, or None if a tile would ignore it."""
     body, crc = block[:-CRC_SIZE], block[-CRC_SIZE:]
-    if len(block) != SETTINGS_SIZE or body[:3] != b"TN" + bytes([SETTINGS_VERSION]):
+    if len(block) != SETTINGS_SIZE or body[:3] != b"TN" + bytes([SETTINGS_VERSION]) or body[9] != 0:
         return None
     period_ms = int.from_bytes(body[4:6], "little")
     if crc16(body) != int.from_bytes(crc, "little") or not MIN_PERIOD_MS <= period_ms <= MAX_PERIOD_MS:
         return None
-    return Settings(body[3], period_ms, int.from_bytes(body[6:8], "little"))
+    return Settings(body[3], period_ms, int.from_bytes(body[6:8], "little"), body[8])

@@ -6,14 +6,28 @@ from typing import Any, TypeAlias
 
 from tilenca.protocol import (
     MAX_SENTENCE,
+    AckSentence,
+    ErrorSentence,
     HelloSentence,
     LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
     Sentence,
     TileSentence,
+    TimeSentence,
     parse_sentence,
 )
 
-TYPES = {HelloSentence: "HELLO", TileSentence: "TILE", LinkSentence: "LINK"}
+TYPES = {
+    HelloSentence: "HELLO",
+    TileSentence: "TILE",
+    LinkSentence: "LINK",
+    TimeSentence: "TIME",
+    ErrorSentence: "ERROR",
+    AckSentence: "ACK",
+    NakSentence: "NAK",
+    OtherVersionSentence: "OTHER",
+}
 
 # A sentence begins at `$` and ends with two digits after `*`; whether it is one, its checksum says.
 _CANDIDATE = re.compile(rb"\$[^*]*\*..", re.DOTALL)
@@ -86,12 +100,12 @@ Event: TypeAlias = Heard | PortNews
 
 
 def type_of(sentence: Sentence) -> str:
-    """The sentence's name on the wire."""
+    """The sentence's name on the wire; `OTHER` for one of another protocol version."""
     return TYPES[type(sentence)]
 
 
 def as_json(heard: Heard) -> dict[str, Any]:
-    """A good line as one JSON object; `state` and `model_id` are hex as on the wire.
+    """A good line as one JSON object; `state`, `model_id` and `firmware_id` are hex as on the wire.
 
     Raises:
         ValueError: the line is damaged.
@@ -101,6 +115,7 @@ def as_json(heard: Heard) -> dict[str, Any]:
     fields = {k: v.hex().upper() if isinstance(v, bytes) else v for k, v in vars(heard.sentence).items()}
     if isinstance(heard.sentence, HelloSentence):
         fields["model_id"] = f"{heard.sentence.model_id:04X}"
+        fields["firmware_id"] = f"{heard.sentence.firmware_id:08X}"
     tile = fields.pop("tile")
     kind = type_of(heard.sentence)
     return {"time": round(heard.time_s, 3), "port": heard.port, "tile": tile, "type": kind, "fields": fields}
@@ -121,6 +136,9 @@ class TileView:
         hello: what the tile said at boot, if we heard that.
         tile: its last state.
         links: the last report of each side, by letter.
+        time: its last report of its time and memory.
+        error: the last thing it said to be wrong since its HELLO.
+        other_version: the protocol it speaks, if it is not ours.
     """
 
     port: str
@@ -134,6 +152,9 @@ class TileView:
     hello: HelloSentence | None = None
     tile: TileSentence | None = None
     links: dict[str, LinkSentence] = field(default_factory=dict)
+    time: TimeSentence | None = None
+    error: ErrorSentence | None = None
+    other_version: int | None = None
     tile_id: int | None = None
 
     def total(self, counter: str) -> int | None:
@@ -155,13 +176,21 @@ class TileView:
 
     def _hear(self, sentence: Sentence) -> None:
         self.tile_id = sentence.tile
-        if isinstance(sentence, HelloSentence):
-            # The tile has just started: what it said before is no longer so.
-            self.hello, self.tile, self.links = sentence, None, {}
-        elif isinstance(sentence, TileSentence):
-            self.tile = sentence
-        else:
-            self.links[sentence.side] = sentence
+        match sentence:
+            case HelloSentence():
+                # The tile may have just started: what it said before is no longer so.
+                self.hello, self.tile, self.links = sentence, None, {}
+                self.time = self.error = self.other_version = None
+            case TileSentence():
+                self.tile = sentence
+            case LinkSentence():
+                self.links[sentence.side] = sentence
+            case TimeSentence():
+                self.time = sentence
+            case ErrorSentence():
+                self.error = sentence
+            case OtherVersionSentence():
+                self.other_version = sentence.version
 
 
 class Fleet:

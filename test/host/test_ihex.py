@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tilenca import paths
 from tilenca.errors import BuildError, TilencaError, UsageError
-from tilenca.ihex import APPLICATION_BYTES, HexError, check_image, parse_hex
+from tilenca.ihex import APPLICATION_BYTES, HexError, check_image, firmware_id, parse_hex
 
 END = ":00000001FF\n"
 
@@ -101,3 +101,9 @@ def test_what_cannot_be_read_as_text_is_refused(content: bytes | None, tmp_path:
         path.write_bytes(content)
     with pytest.raises(TilencaError, match=r"--hex|firmware\.hex"):
         check_image(path)
+
+
+def test_a_firmware_id_is_the_crc_of_the_flash_up_to_the_last_byte() -> None:
+    assert firmware_id(parse_hex(image(b"123456789"))) == 0xCBF43926  # published with the polynomial
+    assert firmware_id({0: ord("1"), 2: ord("3")}) == firmware_id(dict(enumerate(b"1\xff3")))
+    assert firmware_id({}) == 0

@@ -17,10 +17,22 @@ from typing import IO, Any, Self
 import pytest
 
 from tilenca.cli import main
-from tilenca.fleetview import cells, log_line, printable
+from tilenca.fleetview import cells, log_line
 from tilenca.portreader import PortReader
-from tilenca.protocol import HelloSentence, LinkSentence, Sentence, TileSentence, format_sentence
+from tilenca.protocol import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    Sentence,
+    TileSentence,
+    TimeSentence,
+    format_sentence,
+)
 from tilenca.telemetry import Event, Heard, PortNews, TileView
+from tilenca.wording import printable
 
 LIMIT_S = 60
 STATE = bytes([128]) * 21
@@ -113,7 +125,7 @@ def test_json_has_one_object_per_sentence_and_damage_on_stderr(tiles: list[Tile]
         for tile in tiles:
             tile.say()
             tile.write(b"$TILE,dam\x1baged*00\r\n")
-            tile.write(format_sentence(LinkSentence(tile.tile, 100, "E", 9, 8, 1, 0, 0, 12)))
+            tile.write(format_sentence(LinkSentence(tile.tile, 100, "E", 9, 8, 1, 0, 0, 12, 0, 2, "W")))
         heard: list[dict[str, Any]] = []
         while len(heard) < 6:
             heard.append(json.loads(monitor.read_until(monitor.process.stdout, bool)[-1]))
@@ -309,12 +321,24 @@ def test_bytes_cannot_disturb_the_terminal() -> None:
 def test_a_log_line_names_time_port_and_tile() -> None:
     sentences: dict[str, Sentence] = {
         "tile 7 TILE shows nothing update 0 up 0.5 s links ----": TileSentence(7, 500, 0, "", "----", STATE),
-        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 age never": LinkSentence(
-            7, 0, "W", 1, 2, 3, 4, 5, None
+        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 overruns 6 age never": LinkSentence(
+            7, 0, "W", 1, 2, 3, 4, 5, None, 6, None, None
         ),
-        "tile 7 HELLO protocol 1 model 00AB (21 channels, 10 classes) every 250 ms for ever reset cause 04": (
-            HelloSentence(1, 7, 0xAB, 21, 10, 250, 0, 4)
+        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 overruns 6 age 12 ms from tile 9 E": (
+            LinkSentence(7, 0, "W", 1, 2, 3, 4, 5, 12, 6, 9, "E")
         ),
+        "tile 7 HELLO protocol 2 firmware 00C0FFEE model 00AB (21 channels, 10 classes) every 250 ms "
+        "for ever brightness 128 reset by power-on and watchdog": (
+            HelloSentence(2, 7, 0xAB, 21, 10, 250, 0, 9, 0xC0FFEE, 128)
+        ),
+        "tile 7 TIME computes 14200 us awake 16.3 % longest turn 2048 us stack 5000 bytes unused "
+        "3 sentences dropped": TimeSentence(7, 0, 14200, 163, 2048, 5000, 3),
+        "tile 7 ERROR SETTINGS defaults in force": ErrorSentence(7, 0, "SETTINGS", "defaults in force"),
+        "tile 7 ACK SET period 20": AckSentence(7, "SET", ("period", "20")),
+        "tile 7 NAK SET: wrong field": NakSentence(7, "VALUE", "SET"),
+        "tile 7 NAK sentence: damaged": NakSentence(7, "CHECKSUM"),
+        "tile 7 OTHER speaks protocol 1, these tools speak 2: flash it with the firmware that belongs to "
+        "them (tilenca flash)": OtherVersionSentence(1, 7),
     }
     for expected, sentence in sentences.items():
         line = log_line(Heard(0.0, "/dev/ttyACM0", b"", sentence))
@@ -324,8 +348,18 @@ def test_a_log_line_names_time_port_and_tile() -> None:
 def test_a_tile_that_fell_silent_is_marked() -> None:
     view = TileView("p")
     view.take(PortNews(0.0, "p", is_open=True))
-    view.take(Heard(10.0, "p", b"", HelloSentence(1, 7, 0, 21, 10, 10000, 0, 0)))
+    view.take(Heard(10.0, "p", b"", HelloSentence(2, 7, 0, 21, 10, 10000, 0, 0, 0, 255)))
     assert cells(view, 25.0)[-1] == ""
     assert cells(view, 31.0)[-1] == "silent"
     view.take(PortNews(32.0, "p", is_open=False, reason="went away"))
     assert cells(view, 33.0)[-1] == "went away"
+
+
+def test_a_tile_of_another_protocol_version_is_marked() -> None:
+    view = TileView("p")
+    view.take(PortNews(0.0, "p", is_open=True))
+    view.take(Heard(1.0, "p", b"", OtherVersionSentence(1, 7)))
+    assert cells(view, 1.0)[-1] == "speaks protocol 1: flash it"
+    view.take(Heard(2.0, "p", b"", HelloSentence(2, 7, 0, 21, 10, 100, 0, 0, 0, 255)))
+    view.take(Heard(3.0, "p", b"", ErrorSentence(7, 0, "STACK", "")))
+    assert cells(view, 3.0)[-1] == "STACK"

@@ -9,24 +9,36 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca import paths, protocol
-from tilenca.protocol import (
+from tilenca.frames import (
     Frame,
     FrameDecoder,
-    HelloSentence,
-    LinkSentence,
-    Sentence,
-    Settings,
-    TileSentence,
-    checksum,
     cobs_decode,
     cobs_encode,
-    crc16,
     decode_payload,
     encode_frame,
     encode_payload,
+)
+from tilenca.protocol import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    Sentence,
+    Settings,
+    TileSentence,
+    TimeSentence,
+    ask_command,
+    blink_command,
+    checksum,
+    crc16,
     format_sentence,
+    framed,
     parse_sentence,
     parse_settings,
+    restart_command,
+    set_command,
     settings_block,
 )
 
@@ -43,16 +55,31 @@ def cases(name: str) -> list[tuple[str, ...]]:
 
 messages = st.integers(-127, 127)
 frames = st.builds(
-    Frame, st.integers(0, 255), st.integers(0, 0xFFFF), st.lists(messages, min_size=1, max_size=51).map(tuple)
+    Frame,
+    st.integers(0, 3),
+    st.integers(0, 255),
+    st.integers(0, 255),
+    st.integers(0, 0xFFFF),
+    st.lists(messages, min_size=1, max_size=51).map(tuple),
 )
 u8, u16, u32 = (st.integers(0, 2**bits - 1) for bits in (8, 16, 32))
 labels = st.sampled_from(["", *"0123456789AbCdEFGHhIJKLMnoPqrStUuVWXYZ-_="])
 links = st.tuples(*(st.sampled_from([side, "-"]) for side in "NESW")).map("".join)
+sides = st.sampled_from("NESW")
+words = st.text("ABCXYZ", min_size=1, max_size=16)
+texts = st.text("abcXYZ 0129.-", max_size=60)
 sentences: st.SearchStrategy[Sentence] = st.one_of(
-    st.builds(HelloSentence, u8, u8, u16, u8, u8, u16, u16, u8),
+    st.builds(HelloSentence, st.just(protocol.PROTOCOL_VERSION), u8, u16, u8, u8, u16, u16, u8, u32, u8),
     st.builds(TileSentence, u8, u32, u32, labels, links, st.binary(min_size=1, max_size=51)),
-    st.builds(LinkSentence, u8, u32, st.sampled_from("NESW"), u32, u32, u32, u32, u32, st.none() | u32),
-)
+    st.builds(
+        LinkSentence, u8, u32, sides, u32, u32, u32, u32, u32, st.none() | u32, u32,
+        st.none() | u8, st.none() | sides,
+    ),
+    st.builds(TimeSentence, u8, u32, u32, u16, u32, u16, u32),
+    st.builds(ErrorSentence, u8, u32, words, texts),
+    st.builds(AckSentence, u8, words, st.lists(texts.filter(len), max_size=2).map(tuple)),
+    st.builds(NakSentence, u8, words, texts),
+)  # fmt: skip
 
 
 def events(decoder: FrameDecoder, line: bytes) -> list[str]:
@@ -66,7 +93,8 @@ def events(decoder: FrameDecoder, line: bytes) -> list[str]:
             frame = decoder.frame
             assert frame is not None
             found.append(
-                " ".join(["ready", str(frame.sequence), f"{frame.model_id:04X}", *map(str, frame.messages)])
+                f"ready {'NESW'[frame.side]} {frame.tile} {frame.sequence} {frame.model_id:04X} "
+                + " ".join(map(str, frame.messages))
             )
     return found
 
@@ -97,7 +125,7 @@ def test_constants_of_both_twins_agree() -> None:
     shared = {name for name in cpp if hasattr(protocol, name)}
     assert shared >= {
         "PROTOCOL_VERSION", "KIND_STATE", "HEADER_SIZE", "CRC_SIZE", "MAX_CHANNELS", "MESSAGE_OFFSET",
-        "MESSAGE_MAX", "SILENT_PERIODS", "SILENT_EXTRA_MS", "MAX_SENTENCE",
+        "MESSAGE_MAX", "SILENT_PERIODS", "SILENT_EXTRA_MS", "MAX_SENTENCE", "MAX_COMMAND", "MAX_BLINK_S",
         "SETTINGS_SIZE", "SETTINGS_VERSION", "MIN_PERIOD_MS", "MAX_PERIOD_MS",
     }  # fmt: skip
     assert {name: cpp[name] for name in shared} == {name: getattr(protocol, name) for name in shared}
@@ -124,11 +152,24 @@ def test_settings_case(name: str, block: str, expected: str) -> None:
 
 
 SENTENCES: dict[str, Sentence] = {
-    "hello of tile 7": HelloSentence(1, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A),
+    "hello of tile 7": HelloSentence(2, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128),
     "tile before its first update": TileSentence(0, 0, 0, "", "----", bytes([0xC0, 0x80, 0x80])),
     "tile after its first update": TileSentence(255, 4294967295, 1, "4", "N-S-", bytes([0xC0, 0x8A, 0x6C])),
-    "link that never heard a frame": LinkSentence(7, 5, "W", 0, 0, 0, 0, 0, None),
-    "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210),
+    "link that never heard a frame": LinkSentence(7, 5, "W", 0, 0, 0, 0, 0, None, 0, None, None),
+    "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210, 12, 200, "W"),
+    "time": TimeSentence(7, 1000, 14200, 163, 2048, 5000, 3),
+    "error without an address": ErrorSentence(7, 12, "SETTINGS", "defaults in force"),
+    "error with an address": ErrorSentence(0, 3, "WATCHDOG", "hung at 0x00A2C"),
+    "answer to a period": AckSentence(7, "SET", ("period", "20")),
+    "answer to a preset": AckSentence(7, "SET", ("preset", "paper")),
+    "answer to a new id": AckSentence(9, "SET", ("id", "9")),
+    "answer to blink": AckSentence(7, "BLINK", ("5",)),
+    "answer to restart": AckSentence(7, "RESTART"),
+    "a damaged command": NakSentence(7, "CHECKSUM"),
+    "a command too long": NakSentence(7, "LONG"),
+    "a command nobody knows": NakSentence(7, "UNKNOWN", "FLY"),
+    "a value out of range": NakSentence(7, "VALUE", "SET"),
+    "an EEPROM that does not keep": NakSentence(7, "EEPROM", "SET"),
 }
 
 
@@ -140,6 +181,59 @@ def test_sentence_cases() -> None:
         assert format_sentence(sentence) == lines[name].encode() + b"\r\n"
 
 
+COMMANDS = {
+    "ask": ask_command(),
+    "set": set_command("period", 20),
+    "preset": set_command("preset", "paper"),
+    "blink": blink_command(60),
+    "restart": restart_command(),
+}
+
+
+def test_commands_are_those_of_the_shared_table() -> None:
+    lines = {name: bytes.fromhex(line) for name, line, _ in cases("commands.inc")}
+    for name, command in COMMANDS.items():
+        assert command == lines[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [("id", 0, 255), ("period", 10, 10000), ("updates", 0, 65535), ("brightness", 0, 255)],
+)
+def test_settings_have_the_ranges_of_the_protocol(name: str, low: int, high: int) -> None:
+    assert set_command(name, low).startswith(b"$SET,%s,%d*" % (name.encode(), low))
+    assert len(set_command(name, high)) <= protocol.MAX_COMMAND
+    for value in (low - 1, high + 1, "7"):
+        with pytest.raises(ValueError, match=rf"{low}\.\.{high}"):
+            set_command(name, value)
+
+
+def test_commands_that_no_tile_takes_are_not_built() -> None:
+    with pytest.raises(ValueError, match="paper and default"):
+        set_command("preset", "fast")
+    with pytest.raises(ValueError, match="no setting 'color'"):
+        set_command("color", 3)
+    for seconds in (-1, 61):
+        with pytest.raises(ValueError, match=r"0\.\.60"):
+            blink_command(seconds)
+
+
+@pytest.mark.parametrize(
+    ("text", "version"),
+    [
+        ("HELLO,1,7,BEEF,3,2,2000,30,0A", 1),
+        ("LINK,7,5,W,0,0,0,0,0,", 1),
+        ("LINK,7,300,E,1,3,1,0,0,210", 1),
+        ("HELLO,3,7,whatever comes", 3),
+        ("HELLO,1,7,BEEF,3,2,2000,30,0A,00C0FFEE,128", 1),
+    ],
+)
+def test_another_version_is_told_with_its_remedy(text: str, version: int) -> None:
+    sentence = parse_sentence(framed(text))
+    assert sentence == OtherVersionSentence(version, 7)
+    assert f"protocol {version}, these tools speak 2: flash" in OtherVersionSentence(version, 7).remedy
+
+
 @given(st.binary(max_size=57))
 def test_cobs_has_no_zero_and_comes_back(payload: bytes) -> None:
     encoded = cobs_encode(payload)
@@ -149,8 +243,8 @@ def test_cobs_has_no_zero_and_comes_back(payload: bytes) -> None:
 
 
 def test_cobs_refuses_what_no_frame_holds() -> None:
-    with pytest.raises(ValueError, match="at most 57"):
-        cobs_encode(bytes(58))
+    with pytest.raises(ValueError, match="at most 58"):
+        cobs_encode(bytes(59))
 
 
 @given(st.binary(max_size=70))
@@ -211,9 +305,15 @@ def test_a_good_checksum_alone_is_no_sentence(line: bytes) -> None:
         b"TILE,1,2,3,4,NESW," + b"AB" * 52,  # more channels than there are
         b"TILE,-1,2,3,4,NESW,AB",
         b"TILE,1,2,3,4,NESW,ab",
-        b"LINK,1,2,X,3,4,5,6,7,8",
+        b"LINK,1,2,X,3,4,5,6,7,8,0,,",
         b"LINK,1,2,N,3,4,5,6,7",
-        b"HELLO,1,2,ABCD,3,4,5,6,G0",
+        b"LINK,1,2,N,3,4,5,6,7,8,0,1,X",
+        b"HELLO,2,2,ABCD,3,4,5,6,G0,00000000,1",
+        b"HELLO,2,2,ABCD,3,4,5,6,00",
+        b"TIME,1,2,3,4,5,6",
+        b"ERROR,1,2,lower,text",
+        b"ACK,1",
+        b"NAK,1,VALUE",
         b"FUTURE,1,2,3",
         b"",
     ],
@@ -223,8 +323,8 @@ def test_wrong_fields_with_a_good_checksum_are_refused(body: bytes) -> None:
 
 
 @pytest.mark.parametrize(
-    ("tile", "period", "updates"), [(256, 100, 0), (-1, 100, 0), (1, 9, 0), (1, 10001, 0), (1, 100, 65536)]
+    "values", [(256, 100, 0), (-1, 100, 0), (1, 9, 0), (1, 10001, 0), (1, 100, 65536), (1, 100, 0, 256)]
 )
-def test_settings_out_of_range_are_refused(tile: int, period: int, updates: int) -> None:
-    with pytest.raises(ValueError, match=r"0\.\.255"):
-        settings_block(tile, period, updates)
+def test_settings_out_of_range_are_refused(values: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match=r"must be \d+\.\.\d+"):
+        settings_block(*values)

@@ -8,18 +8,24 @@ from hypothesis import strategies as st
 
 from tilenca.protocol import (
     MAX_SENTENCE,
+    PROTOCOL_VERSION,
+    AckSentence,
+    ErrorSentence,
     HelloSentence,
     LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
     Sentence,
     TileSentence,
+    TimeSentence,
     format_sentence,
     parse_sentence,
 )
 from tilenca.telemetry import Fleet, Heard, LineReader, PortNews, TileView, as_json
 
-HELLO = HelloSentence(1, 7, 0xBEEF, 21, 10, 250, 0, 4)
+HELLO = HelloSentence(2, 7, 0xBEEF, 21, 10, 250, 0, 4, 0xC0FFEE, 255)
 TILE = TileSentence(7, 1200, 12, "4", "N-SW", bytes(range(1, 22)))
-LINK = LinkSentence(7, 1201, "E", 100, 98, 2, 3, 1, 15)
+LINK = LinkSentence(7, 1201, "E", 100, 98, 2, 3, 1, 15, 0, 8, "W")
 
 counts = st.integers(0, 2**32 - 1)
 tiles = st.integers(0, 255)
@@ -29,13 +35,15 @@ states = st.lists(st.integers(1, 255), min_size=1, max_size=51).map(bytes)
 sentences: st.SearchStrategy[Sentence] = st.one_of(
     st.builds(
         HelloSentence,
-        st.integers(0, 9),
+        st.just(PROTOCOL_VERSION),
         tiles,
         st.integers(0, 0xFFFF),
         st.integers(1, 51),
         st.integers(1, 50),
         st.integers(10, 10000),
         st.integers(0, 0xFFFF),
+        st.integers(0, 255),
+        counts,
         st.integers(0, 255),
     ),
     st.builds(TileSentence, tiles, counts, counts, labels, links, states),
@@ -50,7 +58,14 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
         counts,
         counts,
         st.none() | counts,
+        counts,
+        st.none() | tiles,
+        st.none() | st.sampled_from("NESW"),
     ),
+    st.builds(TimeSentence, tiles, counts, counts, counts, counts, counts, counts),
+    st.builds(ErrorSentence, tiles, counts, st.just("STACK"), st.text("ab c", max_size=30)),
+    st.builds(AckSentence, tiles, st.just("SET"), st.just(("id", "7"))),
+    st.builds(NakSentence, tiles, st.just("UNKNOWN"), st.text("AB", max_size=9)),
 )
 # What a noisy line may carry between two sentences; without their own end, it must not swallow the next one.
 noise = st.binary(max_size=400) | st.sampled_from(
@@ -132,21 +147,28 @@ def view_of(*sentences: Sentence) -> TileView:
     fleet = Fleet()
     fleet.take(PortNews(0.0, "p", is_open=True))
     for second, sentence in enumerate(sentences, start=1):
-        fleet.take(Heard(float(second), "p", format_sentence(sentence).strip(), sentence))
+        fleet.take(Heard(float(second), "p", b"", sentence))
     return fleet.tiles["p"]
 
 
 def test_a_view_sums_the_last_report_of_each_side() -> None:
-    newer = LinkSentence(7, 1300, "E", 110, 108, 2, 3, 1, 5)
-    west = LinkSentence(7, 1400, "W", 50, 49, 1, 0, 0, None)
+    newer = replace(LINK, uptime_ms=1300, sent=110, received=108, age_ms=5)
+    west = LinkSentence(7, 1400, "W", 50, 49, 1, 0, 0, None, 0, None, None)
     view = view_of(TILE, LINK, newer, west)
     assert (view.tile_id, view.tile, view.sentences, view.heard_s) == (7, TILE, 4, 4.0)
     assert [view.total(counter) for counter in ("sent", "received", "corrupt", "lost")] == [160, 157, 3, 3]
 
 
 def test_a_hello_forgets_what_was_before_the_reset() -> None:
-    view = view_of(TILE, LINK, HELLO)
+    view = view_of(TILE, LINK, OtherVersionSentence(1, 7), ErrorSentence(7, 1, "STACK", ""), HELLO)
     assert (view.hello, view.tile, view.total("received")) == (HELLO, None, None)
+    assert (view.error, view.other_version) == (None, None)
+
+
+def test_a_view_knows_times_and_errors_and_who_speaks_another_version() -> None:
+    time, error = TimeSentence(7, 1000, 14200, 163, 2048, 5000, 0), ErrorSentence(7, 5, "SETTINGS", "x")
+    view = view_of(time, error, OtherVersionSentence(1, 7), NakSentence(7, "VALUE", "SET"))
+    assert (view.time, view.error, view.other_version) == (time, error, 1)
 
 
 def test_damage_and_outages_are_counted() -> None:
@@ -182,4 +204,4 @@ def test_json_has_tile_port_time_type_and_fields() -> None:
 
 def test_a_model_id_is_four_hex_digits_in_json_too() -> None:
     fields = as_json(Heard(0.0, "p", b"", replace(HELLO, model_id=0xAB)))["fields"]
-    assert fields["model_id"] == "00AB"
+    assert (fields["model_id"], fields["firmware_id"]) == ("00AB", "00C0FFEE")
