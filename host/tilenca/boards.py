@@ -4,7 +4,7 @@ import argparse
 import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from serial.tools.list_ports import comports
@@ -32,10 +32,23 @@ class Board:
 
 @dataclass(frozen=True)
 class Found:
-    """The boards that are there, in the order of their ports, and what the file lists besides."""
+    """The fleet.
+
+    Attributes:
+        boards: those that are there, in the order of their ports.
+        missing: what `tiles.toml` lists besides.
+        others: boards on USB that it does not list.
+    """
 
     boards: list[Board]
-    missing: list[Place]
+    missing: list[Place] = field(default_factory=list)
+    others: list[Board] = field(default_factory=list)
+
+    def tell_others(self) -> None:
+        """Says which boards are left alone."""
+        if self.others:
+            names = ", ".join(board.port.name for board in self.others)
+            warn(f"left alone, since the file of tiles does not list them: {names}; name them with --port")
 
 
 def board_name(port: Port, shared: Iterable[str]) -> str:
@@ -97,13 +110,12 @@ def load_places(path: Path | None) -> list[Place]:
     return read_tiles(path or DEFAULT)
 
 
-def find_boards(patterns: Sequence[str], path: Path | None, everything: bool = False) -> Found:
+def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     """The fleet: what `--port` names, else what `tiles.toml` lists, else the Mega 2560s on USB.
 
     Args:
         patterns: of `--port`.
         path: of `--tiles`.
-        everything: include boards on USB that the file does not list.
 
     Raises:
         NoDeviceError: nothing of it is there.
@@ -112,7 +124,7 @@ def find_boards(patterns: Sequence[str], path: Path | None, everything: bool = F
     places = load_places(path)
     on_usb = [describe(info) for info in comports()]
     if patterns or not places:
-        return Found(match(find_ports(patterns), places, on_usb), [])
+        return Found(match(find_ports(patterns), places, on_usb))
     names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]
     listed = [Port(name) for name in names if is_device(name)]
     try:
@@ -127,18 +139,23 @@ def find_boards(patterns: Sequence[str], path: Path | None, everything: bool = F
     known_places = {board.place for board in boards}
     missing = [place for place in places if place not in known_places]
     others = [board for board in boards if board.place is None]
-    if everything:
-        return Found(boards, missing)
-    if others:
-        ports = ", ".join(board.port.name for board in others)
-        warn(f"left alone, since {path or DEFAULT} does not list them: {ports}; name them with --port")
-    mine = [board for board in boards if board.place is not None]
-    if not mine:
+    return Found([board for board in boards if board.place is not None], missing, others)
+
+
+def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
+    """As `find_boards`, but at least one board of the fleet is there.
+
+    Raises:
+        NoDeviceError: none is.
+        UsageError: the file is wrong.
+    """
+    found = find_boards(patterns, path)
+    if not found.boards:
         raise NoDeviceError(
-            f"none of the {len(places)} tiles that {path or DEFAULT} lists is connected; "
+            f"none of the {len(found.missing)} tiles that {path or DEFAULT} lists is connected; "
             "`tilenca devices` lists what is on USB"
         )
-    return Found(mine, missing)
+    return found
 
 
 def tile_numbers(text: str) -> set[int]:

@@ -8,6 +8,7 @@ import json
 from typing import Any
 
 from tilenca.boards import Board, Found, add_fleet_arguments, find_boards
+from tilenca.ports import natural_key
 from tilenca.streams import warn
 from tilenca.tables import table
 from tilenca.tilesfile import Place
@@ -23,9 +24,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints the devices; see `tilenca devices --help`."""
-    found = find_boards(args.port, args.tiles, everything=True)
-    present = [board for board in found.boards if board.port.present]
-    for board in found.boards:
+    found = find_boards(args.port, args.tiles)
+    everything = sorted(found.boards + found.others, key=lambda board: natural_key(board.port.name))
+    present = [board for board in everything if board.port.present]
+    for board in everything:
         if not board.port.present:
             warn(f"{board.port.name}: {board.port.about}")
     for place in found.missing:

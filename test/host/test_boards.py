@@ -9,7 +9,7 @@ import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
 from tilenca import boards, ports
-from tilenca.boards import find_boards, tile_numbers
+from tilenca.boards import find_boards, find_fleet, tile_numbers
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
 from tilenca.tilesfile import Place, write_tiles
@@ -71,8 +71,9 @@ def test_the_file_is_the_fleet_others_are_left_alone_and_missing_ones_told(
     found = find_boards([], None)
     assert [board.tile for board in found.boards] == [7]
     assert [place.tile for place in found.missing] == [8]
+    assert len(found.others) == 4
+    found.tell_others()
     assert "left alone" in capsys.readouterr().err
-    assert len(find_boards([], None, everything=True).boards) == 5
 
 
 def test_a_serial_number_that_two_boards_have_by_now_names_none(lab: list[ListPortInfo]) -> None:
@@ -85,7 +86,7 @@ def test_a_serial_number_that_two_boards_have_by_now_names_none(lab: list[ListPo
 def test_no_listed_tile_at_all_is_no_device(lab: list[ListPortInfo]) -> None:
     write_tiles(Path("tiles.toml"), [Place(7, "serial:other", 0, 0)])
     with pytest.raises(NoDeviceError, match=r"none of the 1 tiles that tiles.toml lists"):
-        find_boards([], None)
+        find_fleet([], None)
 
 
 @pytest.fixture

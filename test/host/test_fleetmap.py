@@ -40,7 +40,7 @@ def test_one_direction_is_enough_and_a_tile_without_a_port_has_its_place() -> No
 
 
 def test_groups_lie_beside_each_other_the_largest_first() -> None:
-    found = arrange({7: {}} | heard((1, "S", 2), (2, "E", 3)))
+    found = arrange(heard((1, "S", 2), (2, "E", 3)) | {7: {}})
     assert found.groups == [[1, 2, 3], [7]]
     assert found.cells == {1: (0, 0), 2: (1, 0), 3: (1, 1), 7: (0, 3)}
 
