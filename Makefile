@@ -70,10 +70,11 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
-bench: setup-train ## print exact sizes of the firmware and the speed of emulation, simulation and training
+bench: setup-train ## print exact sizes of the firmware and the speed of emulation, simulation, training and the monitor
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
 	@$(PYTHON) tools/bench_training.py
+	@$(PYTHON) tools/bench_fleet.py
 	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
