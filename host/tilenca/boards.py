@@ -110,6 +110,11 @@ def load_places(path: Path | None) -> list[Place]:
     return read_tiles(path or DEFAULT)
 
 
+def match_ports(patterns: Sequence[str]) -> list[Board]:
+    """The boards behind the ports that `--port` names, else all on USB; NoDeviceError if none is there."""
+    return match(find_ports(patterns), [], [describe(info) for info in comports()])
+
+
 def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     """The fleet: what `--port` names, else what `tiles.toml` lists, else the Mega 2560s on USB.
 

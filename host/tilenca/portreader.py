@@ -96,9 +96,9 @@ class PortReader:
         self._selector.close()
 
     @property
-    def names(self) -> list[str]:
-        """All ports, open or not."""
-        return [*self._open, *self._closed]
+    def open(self) -> list[str]:
+        """The ports that can be read now."""
+        return list(self._open)
 
     @property
     def closed(self) -> list[str]:

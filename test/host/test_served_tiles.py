@@ -15,7 +15,7 @@ import pytest
 from test_ihex import image
 
 from tilenca import paths
-from tilenca.flash import build
+from tilenca.building import build
 
 LIMIT_S = 120
 
