@@ -1,10 +1,15 @@
 // A tile: read the four sides, tick, write what it says, show it.
 #include <Arduino.h>
 
+#include "app/appearance.h"
 #include "app/button.h"
+#include "app/host.h"
 #include "app/telemetry.h"
 #include "app/tile.h"
+#include "app/timing.h"
+#include "board/boot.h"
 #include "board/chip.h"
+#include "board/eeprom.h"
 #include "board/face.h"
 #include "board/links.h"
 #include "board/pins.h"
@@ -16,25 +21,38 @@ using namespace tilenca;
 namespace {
 
 constexpr uint32_t kHostBaud = 115200;
-constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES};
+constexpr uint16_t kLeastStack = 64; // less of it unused is an error
+constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
+
+Telemetry telemetry;
 
 Settings read_settings() {
     uint8_t block[kSettingsSize];
-    board::read_eeprom(block, sizeof block);
+    board::eeprom_read(block, sizeof block);
     Settings settings = kDefaults;
-    parse_settings(block, &settings);
+    if (!parse_settings(block, &settings) && !is_blank(block)) {
+        telemetry.failed(Error::Settings);
+    }
     return settings;
 }
 
+Boot boot;
 Tile tile(model::kModel, read_settings(), 0);
-Telemetry telemetry;
+Host host(kDefaults, boot);
+Timing timing;
 Sentence sentence;
 Button button;
 
 void say_sentence() {
-    board::usart_write(board::kHostUsart, reinterpret_cast<const uint8_t*>(sentence.bytes()),
-                       sentence.size());
+    if (!board::usart_write(board::kHostUsart, reinterpret_cast<const uint8_t*>(sentence.bytes()),
+                            sentence.size())) {
+        telemetry.drop();
+    }
+}
+
+bool room_to_speak() {
+    return board::usart_room(board::kHostUsart) >= kMaxSentence;
 }
 
 void read_sides(uint32_t now_ms) {
@@ -50,7 +68,13 @@ void tick(uint32_t now_ms) {
     if (button.pressed(board::button_closed(), now_ms)) {
         tile.restart();
     }
-    if (tile.tick(now_ms)) {
+    const uint32_t before_us = board::now_us();
+    const bool was_busy = tile.busy();
+    const bool ended = tile.tick(now_ms);
+    if (was_busy) {
+        timing.computed(board::now_us() - before_us, ended);
+    }
+    if (ended) {
         telemetry.period_ended(tile);
     }
 }
@@ -65,44 +89,102 @@ void write_sides() {
     }
 }
 
-void show() {
-    static uint8_t shown = Tile::kNothing;
-    if (tile.shown() != shown) {
-        shown = tile.shown();
-        const Look look = shown == Tile::kNothing ? Look{} : tile.model().looks[shown];
-        board::show_segments(look.segments);
-        board::show_colour(look.red, look.green, look.blue);
+// What the host says waits in its ring while there is no room for the answer, or EEPROM is being written.
+void obey(uint32_t now_ms) {
+    static bool storing = false;
+    uint8_t byte;
+    if (storing && !board::eeprom_writing() && room_to_speak()) {
+        storing = false;
+        uint8_t kept[kSettingsSize];
+        board::eeprom_read(kept, sizeof kept);
+        host.stored(kept, &tile, &sentence);
+        say_sentence();
     }
-    for (uint8_t i = 0; i < kSides; ++i) {
-        board::show_led(i, tile.link(side_at(i)).alive());
+    while (!storing && room_to_speak() && board::usart_read(board::kHostUsart, &byte)) {
+        switch (host.receive(byte, &tile, now_ms, &sentence)) {
+        case Host::Result::Nothing:
+            break;
+        case Host::Result::Answer:
+            say_sentence();
+            break;
+        case Host::Result::Store:
+            board::eeprom_write(host.block(), kSettingsSize);
+            storing = true;
+            break;
+        }
     }
 }
 
+void show(uint32_t now_ms) {
+    static Look shown;
+    static uint8_t brightness = 0;
+    const Appearance now = appearance_of(tile, host.blinking(now_ms), now_ms);
+    if (now.look != shown || tile.settings().brightness != brightness) {
+        shown = now.look;
+        brightness = tile.settings().brightness;
+        board::show_segments(shown.segments, brightness);
+        board::show_colour(scaled(shown.red, brightness), scaled(shown.green, brightness),
+                           scaled(shown.blue, brightness));
+    }
+    for (uint8_t i = 0; i < kSides; ++i) {
+        board::show_led(i, now.leds >> i & 1);
+    }
+}
+
+Health health() {
+    Health now = {timing.compute_us(), timing.gap_us(), timing.awake_permille(), board::stack_unused(), {}};
+    for (uint8_t i = 0; i < kSides; ++i) {
+        now.overruns[i] = board::link_overruns(side_at(i));
+    }
+    return now;
+}
+
 void report(uint32_t now_ms) {
-    while (telemetry.next(tile, now_ms, &sentence)) {
+    board::stack_watch();
+    if (board::stack_unused() < kLeastStack) {
+        telemetry.failed(Error::Stack);
+    }
+    while (telemetry.next(now_ms) != Telemetry::Next::Nothing && room_to_speak()) {
+        if (telemetry.write(tile, health(), now_ms, &sentence)) {
+            timing.reported();
+        }
         say_sentence();
     }
+}
+
+void sleep() {
+    const uint32_t before_us = board::now_us();
+    board::sleep();
+    timing.slept(board::now_us() - before_us);
 }
 
 } // namespace
 
 void setup() {
+    boot = {board::reset_cause(), board::firmware_id()};
+    if (boot.reset_cause & board::kWatchdogReset) {
+        telemetry.failed(Error::Watchdog, board::hung_at());
+    }
     board::clock_begin();
     board::links_begin();
     board::face_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
-    write_hello(tile, board::take_reset_cause(), &sentence);
+    board::watchdog_begin();
+    write_hello(tile, boot, &sentence);
     say_sentence();
 }
 
 void loop() {
+    board::watchdog_feed();
+    timing.turn(board::now_us());
     const uint32_t now_ms = board::now_ms();
     read_sides(now_ms);
     tick(now_ms);
     write_sides();
-    show();
+    obey(now_ms);
+    show(now_ms);
     report(now_ms);
     if (!tile.busy()) {
-        board::sleep();
+        sleep();
     }
 }

@@ -14,12 +14,14 @@ class Sentence {
 
     // Each appends one field.
     void number(uint32_t value);
-    void hex(uint16_t value, uint8_t digits);
+    void hex(uint32_t value, uint8_t digits);
+    void text(const char* characters);
     void nothing() { put(','); }
 
     // Appends to the last field.
     void more(char character) { put(character); }
-    void more_hex(uint8_t value);
+    void more_hex(uint32_t value, uint8_t digits = 2);
+    void more(const char* characters);
 
     // Appends checksum and line end: the sentence is whole.
     void end();

@@ -25,6 +25,10 @@ class Tile {
     // Starts the classification anew from the seed. The links and the phase of the updates stay.
     void restart();
 
+    // Other settings from now on; the state, the links and the updates done stay. A new period counts from
+    // the end of the last one.
+    void apply(const Settings& settings);
+
     // Takes the next byte from the line on this side.
     void receive(Side side, uint8_t byte, uint32_t now_ms);
 

@@ -1,10 +1,13 @@
-// Time, sleep, memory and the reset cause of the ATmega2560.
+// Time and sleep of the ATmega2560.
 #pragma once
 
 #include <stdint.h>
 
 namespace tilenca {
 namespace board {
+
+// Counts of timer 4, the clock, per millisecond.
+constexpr uint16_t kClockTop = F_CPU / 1000;
 
 // Starts the clock, on timer 4, and stops Arduino's millis(), whose long interrupt would delay the links'
 // edges.
@@ -13,15 +16,12 @@ void clock_begin();
 // Milliseconds since clock_begin(); wraps after 49 days. Call it at least every quarter of a second.
 uint32_t now_ms();
 
+// Microseconds, of the same clock; wraps after 71 minutes.
+uint32_t now_us();
+
 // Sleeps until the millisecond after the one that now_ms() told last. Interrupts for single bits and bytes
 // wake the processor, but not the main loop: what they bring has room for several milliseconds.
 void sleep();
-
-// Copies bytes from EEPROM, from address 0.
-void read_eeprom(uint8_t* bytes, uint8_t size);
-
-// MCUSR as the boot loader left it, cleared for the next time.
-uint8_t take_reset_cause();
 
 } // namespace board
 } // namespace tilenca

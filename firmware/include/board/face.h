@@ -6,11 +6,12 @@
 namespace tilenca {
 namespace board {
 
-// Call it after links_begin(): red shares timer 1 with the south link.
+// Call it after clock_begin() and links_begin(): the clock's timer 4 and the south link's timer 1 dim some of
+// the segments and red.
 void face_begin();
 
-// Bit 0 = segment a ... bit 6 = g, bit 7 = dp; 0 is dark.
-void show_segments(uint8_t segments);
+// Bit 0 = segment a ... bit 6 = g, bit 7 = dp; brightness of 255, 0 is dark.
+void show_segments(uint8_t segments, uint8_t brightness);
 
 // Duty of 255 each; 0 is dark.
 void show_colour(uint8_t red, uint8_t green, uint8_t blue);

@@ -13,6 +13,9 @@ void links_begin();
 // The next byte from this side, if any. Ask every side at least every six milliseconds.
 bool link_read(Side side, uint8_t* byte);
 
+// Bytes, or edges of the line, lost since the start because there was no room for them.
+uint16_t link_overruns(Side side);
+
 // Whether the line is free for the next frame.
 bool link_idle(Side side);
 

@@ -19,6 +19,9 @@ void south_begin();
 // The next byte received, if any. Call it at least every six milliseconds, or edges are lost.
 bool south_read(uint8_t* byte);
 
+// Edges lost since the start, for want of room; said a little late.
+uint16_t south_overruns();
+
 // Starts sending a frame of at most kMaxFrame bytes; only when south_idle().
 void south_write(const uint8_t* bytes, uint8_t size);
 

@@ -7,14 +7,20 @@
 namespace tilenca {
 namespace board {
 
-// 8N1. Reception is on for the three links; the host's USART only sends.
+// 8N1, both directions.
 void usart_begin(uint8_t number, uint32_t baud);
 
 // The next byte received, if any.
 bool usart_read(uint8_t number, uint8_t* byte);
 
+// Bytes received and lost since the start, because nobody took those before them; said a little late.
+uint16_t usart_overruns(uint8_t number);
+
 // Queues all of the bytes or, if there is no room for all, none.
 bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
+
+// How many bytes can be queued now.
+uint8_t usart_room(uint8_t number);
 
 // Whether nothing is queued; up to two bytes may still be leaving.
 bool usart_idle(uint8_t number);

@@ -65,4 +65,12 @@ class FlashView {
     const T* first_;
 };
 
+#ifdef __AVR__
+// Without the library's loop: a table that is looked up for every byte of something.
+template <>
+inline uint32_t FlashView<uint32_t>::operator[](uint16_t index) const {
+    return pgm_read_dword(first_ + index);
+}
+#endif
+
 } // namespace tilenca

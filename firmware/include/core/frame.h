@@ -1,16 +1,16 @@
-// Frames between tiles: docs/PROTOCOL.md section 1. Twin of Frame and FrameDecoder in
-// host/tilenca/protocol.py.
+// Frames between tiles: docs/PROTOCOL.md section 1. Twin of host/tilenca/frames.py.
 #pragma once
 
 #include <stdint.h>
 
 #include "core/network.h"
+#include "core/side.h"
 
 namespace tilenca {
 
-constexpr uint8_t kProtocolVersion = 1;
+constexpr uint8_t kProtocolVersion = 2;
 constexpr uint8_t kKindState = 0;
-constexpr uint8_t kHeaderSize = 4;
+constexpr uint8_t kHeaderSize = 5;
 constexpr uint8_t kCrcSize = 2;
 constexpr uint8_t kMessageOffset = 128;
 constexpr uint8_t kMaxPayload = kHeaderSize + kMaxChannels + kCrcSize;
@@ -18,6 +18,8 @@ constexpr uint8_t kMaxPayload = kHeaderSize + kMaxChannels + kCrcSize;
 constexpr uint8_t kMaxFrame = kMaxPayload + 2;
 
 struct FrameHeader {
+    Side side;    // of the sender, where the frame leaves
+    uint8_t tile; // the sender's id, 0: not set
     uint8_t sequence;
     uint16_t model_id;
 };

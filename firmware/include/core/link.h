@@ -29,6 +29,8 @@ class Link {
     // `timeout_ms`: a neighbour whose last good frame is older is silent.
     Link(uint16_t model_id, uint8_t channels, uint32_t timeout_ms);
 
+    void set_timeout(uint32_t timeout_ms) { timeout_ms_ = timeout_ms; }
+
     // Takes the next byte from the line.
     void receive(uint8_t byte, uint32_t now_ms);
 
@@ -42,12 +44,18 @@ class Link {
     // tick().
     const int8_t* message() const { return alive_ ? message_ : nullptr; }
 
-    // Writes the next frame to the neighbour (at most kMaxFrame bytes) and counts it as sent.
-    uint8_t send(const int8_t* message, uint8_t* wire);
+    // Whether somebody speaks who runs another model.
+    bool foreign() const { return foreign_; }
 
-    // Whether a good frame ever came, and when the last one did.
+    // Writes the next frame to the neighbour (at most kMaxFrame bytes), from this side of the tile with this
+    // id, and counts it as sent.
+    uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire);
+
+    // Whether a good frame ever came, when the last one did, and whence: the neighbour's id and its side.
     bool ever_received() const { return counters_.received != 0; }
     uint32_t age_ms(uint32_t now_ms) const { return now_ms - last_ms_; }
+    uint8_t neighbour() const { return neighbour_; }
+    Side neighbour_side() const { return neighbour_side_; }
 
     const LinkCounters& counters() const { return counters_; }
 
@@ -60,9 +68,13 @@ class Link {
     FrameDecoder decoder_;
     LinkCounters counters_;
     bool alive_ = false;
+    bool foreign_ = false;
+    uint8_t neighbour_ = 0;
+    Side neighbour_side_ = Side::North;
     uint8_t sequence_in_ = 0;  // of the last good frame
     uint8_t sequence_out_ = 0; // of the next frame to send
     uint32_t last_ms_ = 0;
+    uint32_t last_foreign_ms_ = 0;
     int8_t message_[kMaxChannels] = {};
 };
 

@@ -14,9 +14,7 @@ void Sentence::begin(const char* name) {
     bytes_[0] = '$';
     size_ = 1;
     checksum_ = 0;
-    while (*name != '\0') {
-        put(*name++);
-    }
+    more(name);
 }
 
 void Sentence::number(uint32_t value) {
@@ -32,16 +30,27 @@ void Sentence::number(uint32_t value) {
     }
 }
 
-void Sentence::hex(uint16_t value, uint8_t digits) {
+void Sentence::hex(uint32_t value, uint8_t digits) {
     put(',');
-    for (uint8_t i = digits; i > 0; --i) {
-        put(hex_digit(value >> (4 * (i - 1)) & 0xF));
+    more_hex(value, digits);
+}
+
+void Sentence::text(const char* characters) {
+    put(',');
+    more(characters);
+}
+
+void Sentence::more_hex(uint32_t value, uint8_t digits) {
+    while (digits != 0) {
+        --digits;
+        put(hex_digit(static_cast<uint8_t>(value >> (4 * digits)) & 0xF));
     }
 }
 
-void Sentence::more_hex(uint8_t value) {
-    put(hex_digit(value >> 4));
-    put(hex_digit(value & 0xF));
+void Sentence::more(const char* characters) {
+    while (*characters != '\0') {
+        put(*characters++);
+    }
 }
 
 void Sentence::end() {

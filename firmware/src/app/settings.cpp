@@ -10,11 +10,17 @@ uint16_t word_at(const uint8_t* bytes) {
     return bytes[0] | static_cast<uint16_t>(bytes[1]) << 8;
 }
 
+void put_word(uint16_t word, uint8_t* bytes) {
+    bytes[0] = static_cast<uint8_t>(word);
+    bytes[1] = static_cast<uint8_t>(word >> 8);
+}
+
+constexpr uint8_t kChecked = kSettingsSize - 2;
+
 } // namespace
 
 bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings) {
-    constexpr uint8_t kChecked = kSettingsSize - 2;
-    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion) {
+    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion || block[9] != 0) {
         return false;
     }
     if (word_at(block + kChecked) != crc16(block, kChecked)) {
@@ -24,7 +30,28 @@ bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings) {
     if (period_ms < kMinPeriodMs || period_ms > kMaxPeriodMs) {
         return false;
     }
-    *settings = {block[3], period_ms, word_at(block + 6)};
+    *settings = {block[3], period_ms, word_at(block + 6), block[8]};
+    return true;
+}
+
+void write_settings(const Settings& settings, uint8_t (&block)[kSettingsSize]) {
+    block[0] = 'T';
+    block[1] = 'N';
+    block[2] = kSettingsVersion;
+    block[3] = settings.tile_id;
+    put_word(settings.period_ms, block + 4);
+    put_word(settings.updates, block + 6);
+    block[8] = settings.brightness;
+    block[9] = 0;
+    put_word(crc16(block, kChecked), block + kChecked);
+}
+
+bool is_blank(const uint8_t (&block)[kSettingsSize]) {
+    for (uint8_t byte : block) {
+        if (byte != 0xFF) {
+            return false;
+        }
+    }
     return true;
 }
 

@@ -2,7 +2,13 @@
 
 namespace tilenca {
 
-void write_hello(const Tile& tile, uint8_t reset_cause, Sentence* sentence) {
+namespace {
+
+const char* const kErrorCodes[kErrors] = {"SETTINGS", "WATCHDOG", "STACK"};
+
+} // namespace
+
+void write_hello(const Tile& tile, const Boot& boot, Sentence* sentence) {
     sentence->begin("HELLO");
     sentence->number(kProtocolVersion);
     sentence->number(tile.settings().tile_id);
@@ -11,7 +17,9 @@ void write_hello(const Tile& tile, uint8_t reset_cause, Sentence* sentence) {
     sentence->number(tile.model().classes);
     sentence->number(tile.settings().period_ms);
     sentence->number(tile.settings().updates);
-    sentence->hex(reset_cause, 2);
+    sentence->hex(boot.reset_cause, 2);
+    sentence->hex(boot.firmware_id, 8);
+    sentence->number(tile.settings().brightness);
     sentence->end();
 }
 
@@ -35,7 +43,7 @@ void write_tile(const Tile& tile, uint32_t now_ms, Sentence* sentence) {
     sentence->end();
 }
 
-void write_link(const Tile& tile, Side side, uint32_t now_ms, Sentence* sentence) {
+void write_link(const Tile& tile, Side side, uint16_t overruns, uint32_t now_ms, Sentence* sentence) {
     const Link& link = tile.link(side);
     sentence->begin("LINK");
     sentence->number(tile.settings().tile_id);
@@ -47,10 +55,48 @@ void write_link(const Tile& tile, Side side, uint32_t now_ms, Sentence* sentence
     sentence->number(link.counters().corrupt);
     sentence->number(link.counters().lost);
     sentence->number(link.counters().foreign);
-    if (link.ever_received()) {
-        sentence->number(link.age_ms(now_ms));
-    } else {
-        sentence->nothing();
+    const bool heard = link.ever_received();
+    heard ? sentence->number(link.age_ms(now_ms)) : sentence->nothing();
+    sentence->number(overruns);
+    heard ? sentence->number(link.neighbour()) : sentence->nothing();
+    sentence->nothing();
+    if (heard) {
+        sentence->more(kSideLetters[index_of(link.neighbour_side())]);
+    }
+    sentence->end();
+}
+
+void write_time(const Tile& tile, const Health& health, uint32_t dropped, uint32_t now_ms,
+                Sentence* sentence) {
+    sentence->begin("TIME");
+    sentence->number(tile.settings().tile_id);
+    sentence->number(now_ms);
+    sentence->number(health.compute_us);
+    sentence->number(health.awake_permille);
+    sentence->number(health.gap_us);
+    sentence->number(health.stack_unused);
+    sentence->number(dropped);
+    sentence->end();
+}
+
+void write_error(const Tile& tile, Error error, uint32_t place, uint32_t now_ms, Sentence* sentence) {
+    sentence->begin("ERROR");
+    sentence->number(tile.settings().tile_id);
+    sentence->number(now_ms);
+    sentence->text(kErrorCodes[static_cast<uint8_t>(error)]);
+    switch (error) {
+    case Error::Settings:
+        sentence->text("defaults in force");
+        break;
+    case Error::Watchdog:
+        sentence->text(place == 0 ? "hung" : "hung at 0x");
+        if (place != 0) {
+            sentence->more_hex(place, 5);
+        }
+        break;
+    case Error::Stack:
+        sentence->text("almost full");
+        break;
     }
     sentence->end();
 }
@@ -61,26 +107,67 @@ void Telemetry::period_ended(const Tile& tile) {
     if (any_yet_ && !label_changed && ended_ms - last_ms_ < kTilePeriodMs) {
         return;
     }
+    dropped_ += tile_due_ + link_due_;
     any_yet_ = true;
     last_ms_ = ended_ms;
     last_shown_ = tile.shown();
     tile_due_ = true;
+    link_due_ = true;
 }
 
-bool Telemetry::next(const Tile& tile, uint32_t now_ms, Sentence* sentence) {
+void Telemetry::failed(Error error, uint32_t place) {
+    if (error == Error::Watchdog) {
+        hung_at_ = place;
+    }
+    errors_due_ |= mask_of(error) & ~errors_told_;
+    errors_told_ |= mask_of(error);
+}
+
+Telemetry::Next Telemetry::next(uint32_t now_ms) const {
+    if (errors_due_ != 0) {
+        return Next::Error;
+    }
     if (tile_due_) {
-        tile_due_ = false;
-        link_due_ = true;
-        write_tile(tile, now_ms, sentence);
-        return true;
+        return Next::Tile;
     }
     if (link_due_) {
+        return Next::Link;
+    }
+    return now_ms - last_time_ms_ >= kTimePeriodMs ? Next::Time : Next::Nothing;
+}
+
+bool Telemetry::write(const Tile& tile, const Health& health, uint32_t now_ms, Sentence* sentence) {
+    switch (next(now_ms)) {
+    case Next::Error:
+        write_error(tile, first_error(), hung_at_, now_ms, sentence);
+        errors_due_ &= ~mask_of(first_error());
+        break;
+    case Next::Tile:
+        tile_due_ = false;
+        write_tile(tile, now_ms, sentence);
+        break;
+    case Next::Link:
         link_due_ = false;
-        write_link(tile, side_at(next_side_), now_ms, sentence);
+        write_link(tile, side_at(next_side_), health.overruns[next_side_], now_ms, sentence);
         next_side_ = (next_side_ + 1) % kSides;
+        break;
+    case Next::Time:
+        // A second after the last one was due, not after it was written: the phase stays.
+        last_time_ms_ += (now_ms - last_time_ms_) / kTimePeriodMs * kTimePeriodMs;
+        write_time(tile, health, dropped_, now_ms, sentence);
         return true;
+    case Next::Nothing:
+        break;
     }
     return false;
+}
+
+Error Telemetry::first_error() const {
+    uint8_t error = 0;
+    while (!(errors_due_ >> error & 1)) {
+        ++error;
+    }
+    return static_cast<Error>(error);
 }
 
 } // namespace tilenca

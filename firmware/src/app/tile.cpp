@@ -25,6 +25,14 @@ void Tile::restart() {
     tell();
 }
 
+void Tile::apply(const Settings& settings) {
+    due_ms_ = period_ended_ms() + settings.period_ms;
+    settings_ = settings;
+    for (Link& link : links_) {
+        link.set_timeout(silence_ms(settings.period_ms));
+    }
+}
+
 void Tile::receive(Side side, uint8_t byte, uint32_t now_ms) {
     links_[index_of(side)].receive(byte, now_ms);
 }
@@ -75,7 +83,7 @@ void Tile::begin_update() {
 
 uint8_t Tile::take_frame(Side side, uint8_t* wire) {
     untold_ &= ~mask_of(side);
-    return links_[index_of(side)].send(cell_.message(), wire);
+    return links_[index_of(side)].send(side, settings_.tile_id, cell_.message(), wire);
 }
 
 } // namespace tilenca

@@ -1,6 +1,5 @@
 #include "board/chip.h"
 
-#include <avr/eeprom.h>
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -17,11 +16,15 @@ uint32_t now = 0;           // as last told
 
 void clock_begin() {
     TIMSK0 = 0;
-    TCCR4A = 0;
-    TCCR4B = 1 << WGM42 | 1 << CS40; // from 0 to OCR4A, one count per cycle
-    OCR4A = F_CPU / 1000 - 1;
+    // Fast PWM with ICR4 as top (mode 14), one count per cycle: its outputs dim segments.
+    TCCR4B = 0;
+    TCCR4A = 1 << WGM41;
+    TCCR4B = 1 << WGM43 | 1 << WGM42;
+    ICR4 = kClockTop - 1;
     TCNT4 = 0;
-    TIMSK4 = 1 << OCIE4A;
+    TIFR4 = 1 << TOV4;
+    TIMSK4 = 1 << TOIE4;
+    TCCR4B |= 1 << CS40;
 }
 
 uint32_t now_ms() {
@@ -29,7 +32,20 @@ uint32_t now_ms() {
     return now;
 }
 
-ISR(TIMER4_COMPA_vect) {
+uint32_t now_us() {
+    const uint8_t interrupts = SREG;
+    cli();
+    uint16_t count = TCNT4;
+    uint8_t tick = ticks;
+    if (TIFR4 & 1 << TOV4 && count < kClockTop / 2) {
+        ++tick; // its interrupt is still to come
+    }
+    SREG = interrupts;
+    const uint32_t ms = now + static_cast<uint8_t>(tick - static_cast<uint8_t>(now));
+    return ms * 1000 + count / (F_CPU / 1000000);
+}
+
+ISR(TIMER4_OVF_vect) {
     ++ticks;
 }
 
@@ -44,16 +60,6 @@ void sleep() {
     }
     sei();
     sleep_disable();
-}
-
-void read_eeprom(uint8_t* bytes, uint8_t size) {
-    eeprom_read_block(bytes, nullptr, size);
-}
-
-uint8_t take_reset_cause() {
-    const uint8_t cause = MCUSR;
-    MCUSR = 0;
-    return cause;
 }
 
 } // namespace board

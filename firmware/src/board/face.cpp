@@ -2,6 +2,7 @@
 
 #include <avr/io.h>
 
+#include "board/chip.h"
 #include "board/gpio.h"
 #include "board/south_uart.h"
 
@@ -19,17 +20,75 @@ void face_begin() {
     make_output(kGreen);
     make_output(kBlue);
     // Phase-correct 8-bit PWM at 490 Hz: unlike fast PWM it is fully dark at 0.
+    TCCR0A = 1 << WGM00;
+    TCCR0B = 1 << CS01 | 1 << CS00;
     TCCR2A = 1 << WGM20;
     TCCR2B = 1 << CS22;
     TCCR3A = 1 << WGM30;
     TCCR3B = 1 << CS31 | 1 << CS30;
-    show_segments(0);
+    show_segments(0, 0);
     show_colour(0, 0, 0);
 }
 
-void show_segments(uint8_t segments) {
+namespace {
+
+// The compare value that gives `duty` of 255, at least 1, on a fast PWM timer of so many counts.
+uint16_t compare_of(uint8_t duty, uint16_t counts) {
+    return static_cast<uint16_t>(static_cast<uint32_t>(duty) * counts / 255 - 1);
+}
+
+// The output of each segment's pin: the register that joins it to its timer, and by which bit. No two share a
+// compare unit with each other or with a colour.
+struct Dimmer {
+    volatile uint8_t* control;
+    uint8_t bit;
+};
+
+Dimmer dimmer_of(uint8_t segment) {
+    static_assert(kSegments[0].port == 'H' && kSegments[0].bit == 4, "OC4B and so on, as below");
+    switch (segment) {
+    case 0:
+        return {&TCCR4A, COM4B1};
+    case 1:
+        return {&TCCR4A, COM4A1};
+    case 2:
+        return {&TCCR3A, COM3A1};
+    case 3:
+        return {&TCCR0A, COM0A1};
+    case 4:
+        return {&TCCR1A, COM1B1};
+    case 5:
+        return {&TCCR2A, COM2B1};
+    case 6:
+        return {&TCCR4A, COM4C1};
+    default:
+        return {&TCCR0A, COM0B1};
+    }
+}
+
+void set_duty_of_segments(uint8_t duty) {
+    OCR4A = OCR4B = OCR4C = compare_of(duty, kClockTop);
+    OCR1B = compare_of(duty, kSouthBitCycles);
+    OCR3A = duty;
+    OCR0A = OCR0B = OCR2B = duty;
+}
+
+} // namespace
+
+void show_segments(uint8_t segments, uint8_t brightness) {
+    if (brightness != 0) {
+        set_duty_of_segments(brightness);
+    }
     for (uint8_t i = 0; i < 8; ++i) {
-        set(kSegments[i], segments >> i & 1);
+        const bool lit = (segments >> i & 1) && brightness != 0;
+        const Dimmer dimmer = dimmer_of(i);
+        // At full brightness the pin is simply high: no timer, no flicker.
+        if (lit && brightness != 0xFF) {
+            *dimmer.control |= 1 << dimmer.bit;
+        } else {
+            *dimmer.control &= ~(1 << dimmer.bit);
+        }
+        set(kSegments[i], lit);
     }
 }
 
@@ -38,7 +97,7 @@ void show_colour(uint8_t red, uint8_t green, uint8_t blue) {
     if (red == 0) {
         TCCR1A &= ~(1 << COM1A1);
     } else {
-        OCR1A = static_cast<uint16_t>(static_cast<uint32_t>(red) * kSouthBitCycles / 255 - 1);
+        OCR1A = compare_of(red, kSouthBitCycles);
         TCCR1A |= 1 << COM1A1;
     }
     OCR2A = green;

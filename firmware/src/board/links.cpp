@@ -32,6 +32,10 @@ bool link_read(Side side, uint8_t* byte) {
     return side == Side::South ? south_read(byte) : usart_read(usart_of(side), byte);
 }
 
+uint16_t link_overruns(Side side) {
+    return side == Side::South ? south_overruns() : usart_overruns(usart_of(side));
+}
+
 bool link_idle(Side side) {
     return side == Side::South ? south_idle() : usart_idle(usart_of(side));
 }

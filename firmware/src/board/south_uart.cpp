@@ -25,7 +25,9 @@ static_assert(kSouthTx.port == 'K' && kSouthTx.bit == 7, "the toggles below leav
 
 // The edges' stamps: all low bytes, then all high bytes, so that one index serves both and wraps by itself.
 volatile uint8_t edge_low_high[2][256];
-uint8_t edge_tail = 0;
+volatile uint8_t edge_tail = 0;
+volatile uint8_t edges_lost = 0; // noted by the interrupt, added up by the main loop
+uint16_t overruns = 0;
 EdgeReceiver receiver(kSouthBitCounts);
 
 // The interrupt reads one byte beyond the last before it notices.
@@ -61,19 +63,27 @@ void south_begin() {
     TCCR1A = 1 << WGM11;
     TCCR1B = 1 << WGM13 | 1 << WGM12;
     ICR1 = kSouthBitCycles - 1;
-    OCR1B = 0;
+    OCR1C = 0; // B dims a segment
     TCNT1 = 0;
     TCCR1B |= 1 << CS10;
 }
 
 bool south_read(uint8_t* byte) {
+    if (edges_lost != 0) {
+        const uint8_t interrupts = SREG;
+        cli();
+        overruns += edges_lost;
+        edges_lost = 0;
+        SREG = interrupts;
+    }
     // `now` before the ring: an edge that comes in between is then taken before its time, which does no harm.
     const uint16_t now = timer5_count();
     int16_t result = EdgeReceiver::kNoByte;
     while (result == EdgeReceiver::kNoByte && edge_tail != SOUTH_EDGE_HEAD) {
-        const uint16_t high = edge_low_high[1][edge_tail];
-        result = receiver.edge(static_cast<uint16_t>(high << 8 | edge_low_high[0][edge_tail]));
-        ++edge_tail;
+        const uint8_t at = edge_tail;
+        const uint16_t high = edge_low_high[1][at];
+        result = receiver.edge(static_cast<uint16_t>(high << 8 | edge_low_high[0][at]));
+        edge_tail = at + 1;
     }
     if (result == EdgeReceiver::kNoByte) {
         result = receiver.poll(now);
@@ -82,14 +92,18 @@ bool south_read(uint8_t* byte) {
     return result != EdgeReceiver::kNoByte;
 }
 
+uint16_t south_overruns() {
+    return overruns;
+}
+
 void south_write(const uint8_t* bytes, uint8_t size) {
     // The interrupt is off while this writes.
     toggle_end = toggles_of(bytes, size, const_cast<uint8_t*>(toggles));
     toggle_at = 1;
     SOUTH_BITS = toggles[0];
     SOUTH_BITS_LEFT = 8;
-    TIFR1 = 1 << OCF1B; // an old match would make the first bit short
-    TIMSK1 = 1 << OCIE1B;
+    TIFR1 = 1 << OCF1C; // an old match would make the first bit short
+    TIMSK1 = 1 << OCIE1C;
 }
 
 bool south_idle() {
@@ -100,7 +114,7 @@ bool south_idle() {
 // that a receiver's sampling allows. The compiler needs twice the cycles.
 
 // First of all the line, so that every edge comes equally late; then, every eighth time, the next toggles.
-ISR(TIMER1_COMPB_vect, ISR_NAKED) {
+ISR(TIMER1_COMPC_vect, ISR_NAKED) {
     __asm__ volatile("push r24 \n\t"
                      "in r24, __SREG__ \n\t"
                      "push r24 \n\t"
@@ -161,15 +175,19 @@ ISR(PCINT2_vect, ISR_NAKED) {
                      "sbrc r30, %[rx] \n\t"
                      "ori r24, 1 \n\t"
                      "in r30, %[head] \n\t"
-                     "mov r31, r30 \n\t"
-                     "inc r31 \n\t"
-                     "out %[head], r31 \n\t"
                      "clr r31 \n\t"
                      "subi r30, lo8(-(%[edges])) \n\t"
                      "sbci r31, hi8(-(%[edges])) \n\t"
-                     "st Z, r24 \n\t"
+                     "st Z, r24 \n\t" // there is always one place free
                      "inc r31 \n\t"
                      "st Z, r25 \n\t"
+                     "in r30, %[head] \n\t"
+                     "inc r30 \n\t"
+                     "lds r24, %[tail] \n\t"
+                     "cp r30, r24 \n\t"
+                     "breq 1f \n\t"
+                     "out %[head], r30 \n\t"
+                     "2: \n\t"
                      "pop r31 \n\t"
                      "pop r30 \n\t"
                      "pop r25 \n\t"
@@ -177,9 +195,14 @@ ISR(PCINT2_vect, ISR_NAKED) {
                      "out __SREG__, r24 \n\t"
                      "pop r24 \n\t"
                      "reti \n\t"
+                     "1: lds r24, %[lost] \n\t"
+                     "inc r24 \n\t"
+                     "sts %[lost], r24 \n\t"
+                     "rjmp 2b \n\t"
                      :
-                     : [count] "n"(_SFR_MEM_ADDR(TCNT5)), [pins] "n"(_SFR_MEM_ADDR(PINK)),
-                       [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)), [rx] "I"(PK6), [edges] "i"(edge_low_high));
+                     : [tail] "i"(&edge_tail), [lost] "i"(&edges_lost), [count] "n"(_SFR_MEM_ADDR(TCNT5)),
+                       [pins] "n"(_SFR_MEM_ADDR(PINK)), [head] "I"(_SFR_IO_ADDR(SOUTH_EDGE_HEAD)),
+                       [rx] "I"(PK6), [edges] "i"(edge_low_high));
 }
 
 } // namespace board

@@ -36,6 +36,10 @@ LinkRing received[4];
 LinkRing link_queues[4];
 HostRing host_queue;
 
+// Noted by the interrupts, added up by the main loop.
+volatile uint8_t overrun[4];
+uint16_t overruns[4];
+
 } // namespace
 
 void usart_begin(uint8_t number, uint32_t baud) {
@@ -43,15 +47,26 @@ void usart_begin(uint8_t number, uint32_t baud) {
     usart.control_a = 1 << U2X0;
     usart.baud = static_cast<uint16_t>((F_CPU / 4 / baud - 1) / 2); // F_CPU / 8 / baud - 1, rounded
     usart.control_c = 1 << UCSZ01 | 1 << UCSZ00;
-    usart.control_b = number == kHostUsart ? 1 << TXEN0 : 1 << TXEN0 | 1 << RXEN0 | 1 << RXCIE0;
+    usart.control_b = 1 << TXEN0 | 1 << RXEN0 | 1 << RXCIE0;
 }
 
 bool usart_read(uint8_t number, uint8_t* byte) {
+    if (overrun[number] != 0) {
+        const uint8_t interrupts = SREG;
+        cli();
+        overruns[number] += overrun[number];
+        overrun[number] = 0;
+        SREG = interrupts;
+    }
     if (received[number].empty()) {
         return false;
     }
     *byte = received[number].take();
     return true;
+}
+
+uint16_t usart_overruns(uint8_t number) {
+    return overruns[number];
 }
 
 namespace {
@@ -87,6 +102,10 @@ bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size) {
     return queued;
 }
 
+uint8_t usart_room(uint8_t number) {
+    return number == kHostUsart ? host_queue.room() : link_queues[number].room();
+}
+
 bool usart_idle(uint8_t number) {
     return number == kHostUsart ? host_queue.empty() : link_queues[number].empty();
 }
@@ -109,13 +128,32 @@ template <uint8_t kNumber>
 inline __attribute__((always_inline)) void receive() {
     __asm__ volatile(
         ENTER
+        "lds r24, %[status] \n\t" // before the byte, with which it goes
+        "bst r24, %[lost] \n\t"
         "lds r24, %[data] \n\t"
         "lds r30, %[head] \n\t"
-        MOVE_ON("%[head]")
-        "st Z, r24 \n\t"
+        "clr r31 \n\t"
+        "subi r30, lo8(-(%[bytes])) \n\t"
+        "sbci r31, hi8(-(%[bytes])) \n\t"
+        "st Z, r24 \n\t" // there is always one place free
+        "lds r30, %[head] \n\t"
+        "inc r30 \n\t"
+        "andi r30, %[wrap] \n\t"
+        "lds r24, %[tail] \n\t"
+        "cp r30, r24 \n\t"
+        "breq 1f \n\t"
+        "sts %[head], r30 \n\t"
+        "brts 1f \n\t"
+        "rjmp 2f \n\t"
+        "1: lds r24, %[overrun] \n\t"
+        "inc r24 \n\t"
+        "sts %[overrun], r24 \n\t"
+        "2: \n\t"
         LEAVE
         :
-        : [data] "n"(kRegisters[kNumber] + offsetof(Registers, data)),
+        : [status] "n"(kRegisters[kNumber] + offsetof(Registers, control_a)), [lost] "n"(DOR0),
+          [data] "n"(kRegisters[kNumber] + offsetof(Registers, data)),
+          [tail] "i"(&received[kNumber].tail), [overrun] "i"(&overrun[kNumber]),
           [head] "i"(&received[kNumber].head),
           [bytes] "i"(received[kNumber].bytes),
           [wrap] "n"(int{LinkRing::kWrap}));
@@ -154,6 +192,9 @@ inline __attribute__((always_inline)) void send() {
 #undef LEAVE
 #undef MOVE_ON
 
+ISR(USART0_RX_vect, ISR_NAKED) {
+    receive<0>();
+}
 ISR(USART1_RX_vect, ISR_NAKED) {
     receive<1>();
 }

@@ -6,7 +6,8 @@ namespace tilenca {
 
 namespace {
 
-constexpr uint8_t kVersionAndKind = kProtocolVersion << 4 | kKindState;
+constexpr uint8_t kVersionAndKind = kProtocolVersion << 4 | kKindState << 2;
+constexpr uint8_t kSideBits = 3;
 
 // Replaces every zero of bytes[1..size] by the distance to the next one; bytes[0] starts the chain. The
 // payload is shorter than COBS's longest block, so the blocks need no splitting.
@@ -26,7 +27,8 @@ void do_cobs(uint8_t* bytes, uint8_t size) {
 uint8_t encode_frame(FrameHeader header, const int8_t* messages, uint8_t channels, uint8_t* wire) {
     uint8_t* payload = wire + 1;
     uint8_t size = 0;
-    payload[size++] = kVersionAndKind;
+    payload[size++] = kVersionAndKind | index_of(header.side);
+    payload[size++] = header.tile;
     payload[size++] = header.sequence;
     payload[size++] = static_cast<uint8_t>(header.model_id);
     payload[size++] = static_cast<uint8_t>(header.model_id >> 8);
@@ -61,7 +63,9 @@ FrameDecoder::Result FrameDecoder::feed(uint8_t byte) {
 }
 
 FrameHeader FrameDecoder::header() const {
-    return {bytes_[2], static_cast<uint16_t>(bytes_[3] | static_cast<uint16_t>(bytes_[4]) << 8)};
+    const uint8_t* payload = bytes_ + 1;
+    return {side_at(payload[0] & kSideBits), payload[1], payload[2],
+            static_cast<uint16_t>(payload[3] | static_cast<uint16_t>(payload[4]) << 8)};
 }
 
 bool FrameDecoder::decode() {
@@ -71,7 +75,7 @@ bool FrameDecoder::decode() {
     uint8_t* payload = bytes_ + 1;
     const uint8_t checked = kHeaderSize + channels_;
     const uint16_t crc = payload[checked] | static_cast<uint16_t>(payload[checked + 1]) << 8;
-    if (payload[0] != kVersionAndKind || crc != crc16(payload, checked)) {
+    if ((payload[0] & ~kSideBits) != kVersionAndKind || crc != crc16(payload, checked)) {
         return false;
     }
     for (uint8_t i = kHeaderSize; i < checked; ++i) {

@@ -26,6 +26,8 @@ void Link::accept(uint32_t now_ms) {
     if (header.model_id != model_id_) {
         ++counters_.foreign;
         alive_ = false;
+        foreign_ = true;
+        last_foreign_ms_ = now_ms;
         return;
     }
     if (alive_) {
@@ -33,21 +35,27 @@ void Link::accept(uint32_t now_ms) {
     }
     ++counters_.received;
     alive_ = true;
+    foreign_ = false;
+    neighbour_ = header.tile;
+    neighbour_side_ = header.side;
     sequence_in_ = header.sequence;
     last_ms_ = now_ms;
     memcpy(message_, decoder_.messages(), channels_);
 }
 
 void Link::tick(uint32_t now_ms) {
-    // A latch: the age itself starts again from zero after 49 days.
+    // Latches: the ages themselves start again from zero after 49 days.
     if (alive_ && age_ms(now_ms) > timeout_ms_) {
         alive_ = false;
     }
+    if (foreign_ && now_ms - last_foreign_ms_ > timeout_ms_) {
+        foreign_ = false;
+    }
 }
 
-uint8_t Link::send(const int8_t* message, uint8_t* wire) {
+uint8_t Link::send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire) {
     ++counters_.sent;
-    return encode_frame({sequence_out_++, model_id_}, message, channels_, wire);
+    return encode_frame({side, tile, sequence_out_++, model_id_}, message, channels_, wire);
 }
 
 } // namespace tilenca

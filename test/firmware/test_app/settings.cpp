@@ -26,15 +26,16 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
     uint8_t block[kSettingsSize];
     REQUIRE(bytes.size() == sizeof block);
     memcpy(block, bytes.data(), sizeof block);
-    Settings settings = {99, 9999, 999};
+    Settings settings = {99, 9999, 999, 9};
     if (!parse_settings(block, &settings)) {
         CHECK(settings.tile_id == 99);
         CHECK(settings.period_ms == 9999);
         CHECK(settings.updates == 999);
+        CHECK(settings.brightness == 9);
         return "ignored";
     }
     return std::to_string(settings.tile_id) + " " + std::to_string(settings.period_ms) + " " +
-           std::to_string(settings.updates);
+           std::to_string(settings.updates) + " " + std::to_string(settings.brightness);
 }
 
 } // namespace
@@ -44,6 +45,24 @@ TEST_CASE("every case of the shared table") {
         CAPTURE(settings_case.name);
         CHECK(meaning_of(test::bytes_of_hex(settings_case.block)) == settings_case.meaning);
     }
+}
+
+TEST_CASE("writing gives the block of every case that is not ignored") {
+    int written = 0;
+    for (const SettingsCase& settings_case : kCases) {
+        const std::vector<uint8_t> bytes = test::bytes_of_hex(settings_case.block);
+        uint8_t block[kSettingsSize];
+        memcpy(block, bytes.data(), sizeof block);
+        Settings settings;
+        if (parse_settings(block, &settings)) {
+            memset(block, 0x55, sizeof block);
+            write_settings(settings, block);
+            CHECK(std::vector<uint8_t>(block, block + sizeof block) == bytes);
+            ++written;
+        }
+        CHECK(is_blank(block) == (std::string(settings_case.name) == "erased"));
+    }
+    CHECK(written == 3);
 }
 
 TEST_CASE("a block with any one bit flipped is ignored") {

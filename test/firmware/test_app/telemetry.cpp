@@ -2,36 +2,15 @@
 
 #include "../support.h"
 #include "app/telemetry.h"
+#include "lines.h"
 
 using namespace tilenca;
+using test::line_of;
 using test::Numbers;
 using test::RandomModel;
+using test::text_of;
 
 namespace {
-
-// The lines both twins agree on, by name.
-const char* line_of(const std::string& name) {
-    struct Line {
-        const char* name;
-        const char* text;
-    };
-    static const Line lines[] = {
-#define CASE(name, text) {name, text "\r\n"},
-#include "sentences.inc"
-#undef CASE
-    };
-    for (const Line& line : lines) {
-        if (name == line.name) {
-            return line.text;
-        }
-    }
-    FAIL("no such line: " << name);
-    return nullptr;
-}
-
-std::string text_of(const Sentence& sentence) {
-    return {sentence.bytes(), sentence.size()};
-}
 
 // Three channels; every state grows by 1/8192 * (bias) per update, so that texts are known beforehand.
 struct Fixture {
@@ -62,7 +41,7 @@ struct Fixture {
         const int8_t message[3] = {1, 2, 3};
         for (int i = 0; i < frames; ++i) {
             uint8_t wire[kMaxFrame];
-            const uint8_t size = neighbour.send(message, wire);
+            const uint8_t size = neighbour.send(Side::West, 200, message, wire);
             for (uint8_t at = 0; at < size; ++at) {
                 tile.receive(side, wire[at], now_ms);
             }
@@ -73,21 +52,21 @@ struct Fixture {
 } // namespace
 
 TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
-    const Tile tile(model, {7, 2000, 30}, 0);
+    const Tile tile(model, {7, 2000, 30, 128}, 0);
     Sentence sentence;
-    write_hello(tile, 0x0A, &sentence);
+    write_hello(tile, {0x0A, 0x00C0FFEE}, &sentence);
     CHECK(text_of(sentence) == line_of("hello of tile 7"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile that shows nothing yet says so") {
-    const Tile tile(model, {0, 100, 0}, 0);
+    const Tile tile(model, {0, 100, 0, 255}, 0);
     Sentence sentence;
     write_tile(tile, 0, &sentence);
     CHECK(text_of(sentence) == line_of("tile before its first update"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile says what it shows, which links live, and its state as sent") {
-    Tile tile(model, {255, 100, 0}, 0);
+    Tile tile(model, {255, 100, 0, 255}, 0);
     let_neighbour_speak(tile, Side::North, 1, 90);
     let_neighbour_speak(tile, Side::South, 2, 95);
     end_period(tile, 99);
@@ -97,24 +76,39 @@ TEST_CASE_FIXTURE(Fixture, "a tile says what it shows, which links live, and its
 }
 
 TEST_CASE_FIXTURE(Fixture, "a link tells its counters and its age") {
-    Tile tile(model, {7, 100, 0}, 0);
+    Tile tile(model, {7, 100, 0, 255}, 0);
     Sentence sentence;
-    write_link(tile, Side::West, 5, &sentence);
+    write_link(tile, Side::West, 0, 5, &sentence);
     CHECK(text_of(sentence) == line_of("link that never heard a frame"));
     let_neighbour_speak(tile, Side::East, 3, 90);
     tile.receive(Side::East, 1, 90);
     tile.receive(Side::East, 0, 90);
     uint8_t wire[kMaxFrame];
     tile.take_frame(Side::East, wire);
-    write_link(tile, Side::East, 300, &sentence);
+    write_link(tile, Side::East, 12, 300, &sentence);
     CHECK(text_of(sentence) == line_of("link with a corrupt frame"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile tells its times, its stack and what it dropped") {
+    const Tile tile(model, {7, 100, 0, 255}, 0);
+    Sentence sentence;
+    write_time(tile, {14200, 2048, 163, 5000, {}}, 3, 1000, &sentence);
+    CHECK(text_of(sentence) == line_of("time"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "what is wrong is said in words") {
+    Sentence sentence;
+    write_error(Tile(model, {7, 100, 0, 255}, 0), Error::Settings, 0, 12, &sentence);
+    CHECK(text_of(sentence) == line_of("error without an address"));
+    write_error(Tile(model, {0, 100, 0, 255}, 0), Error::Watchdog, 0x0A2C, 3, &sentence);
+    CHECK(text_of(sentence) == line_of("error with an address"));
 }
 
 TEST_CASE("the longest sentences fit") {
     Numbers numbers(1);
     const RandomModel random(kMaxChannels, 3, 3, 10, numbers, 9);
     const Model model = random.model(0xFFFF);
-    const Tile tile(model, {255, 10000, 65535}, 0);
+    const Tile tile(model, {255, 10000, 65535, 255}, 0);
     Sentence sentence;
     write_tile(tile, 4294967295, &sentence);
     CHECK(sentence.size() <= kMaxSentence);
@@ -122,23 +116,42 @@ TEST_CASE("the longest sentences fit") {
     CHECK(text_of(sentence).find(",----,C08080") != std::string::npos);
     const size_t state_digits = text_of(sentence).find('*') - text_of(sentence).rfind(',') - 1;
     CHECK(state_digits == 2 * kMaxChannels);
+    Tile heard(model, {255, 10000, 65535, 255}, 0);
+    write_link(heard, Side::West, 65535, 4294967295, &sentence);
+    CHECK(sentence.size() <= kMaxSentence);
+    write_time(heard, {4294967295, 4294967295, 1000, 65535, {}}, 4294967295, 4294967295, &sentence);
+    CHECK(sentence.size() <= kMaxSentence);
 }
 
+namespace {
+
+// All that is due now, by the first letters of the names; of a LINK, the side's.
+std::string said_at(uint32_t now_ms, const Tile& tile, Telemetry* telemetry) {
+    std::string names;
+    while (telemetry->next(now_ms) != Telemetry::Next::Nothing) {
+        Sentence sentence;
+        telemetry->write(tile, {}, now_ms, &sentence);
+        const std::string text = text_of(sentence);
+        const std::string time = std::to_string(now_ms);
+        names += text[1] == 'L'                     ? text.at(text.find("," + time + ",") + time.size() + 2)
+                 : text[2] == 'I' && text[3] == 'M' ? 't'
+                                                    : text[1];
+    }
+    return names;
+}
+
+} // namespace
+
 TEST_CASE_FIXTURE(Fixture, "after every period comes a tile sentence, then one link, in turn") {
-    Tile tile(model, {7, 100, 0}, 0);
+    Tile tile(model, {7, 100, 0, 255}, 0);
     Telemetry telemetry;
-    Sentence sentence;
-    CHECK_FALSE(telemetry.next(tile, 0, &sentence));
+    CHECK(said_at(0, tile, &telemetry) == "");
     uint32_t now_ms = 0;
     std::string names;
     for (int period = 0; period < 5; ++period) {
         now_ms = end_period(tile, now_ms);
         telemetry.period_ended(tile);
-        while (telemetry.next(tile, now_ms, &sentence)) {
-            const std::string text = text_of(sentence);
-            const std::string time = std::to_string(now_ms);
-            names += text[1] == 'T' ? 'T' : text.at(text.find(time) + time.size() + 1);
-        }
+        names += said_at(now_ms, tile, &telemetry);
     }
     CHECK(names == "TNTETSTWTN");
 }
@@ -146,9 +159,8 @@ TEST_CASE_FIXTURE(Fixture, "after every period comes a tile sentence, then one l
 TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when its label changes") {
     growth[1] = 0;
     growth[2] = 0;
-    Tile tile(model, {7, 10, 0}, 0);
+    Tile tile(model, {7, 10, 0, 255}, 0);
     Telemetry telemetry;
-    Sentence sentence;
     uint32_t now_ms = 0;
     std::vector<uint32_t> spoken_at;
     for (int period = 1; period <= 40; ++period) {
@@ -157,11 +169,49 @@ TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when it
         }
         now_ms = end_period(tile, now_ms);
         telemetry.period_ended(tile);
-        while (telemetry.next(tile, now_ms, &sentence)) {
-            if (sentence.bytes()[1] == 'T') {
-                spoken_at.push_back(tile.updates());
-            }
+        if (said_at(now_ms, tile, &telemetry).find('T') != std::string::npos) {
+            spoken_at.push_back(tile.updates());
         }
     }
     CHECK(spoken_at == std::vector<uint32_t>{1, 11, 15, 25, 35});
+}
+
+TEST_CASE_FIXTURE(Fixture, "times are told every second by the tile's clock, however late the calls come") {
+    const Tile tile(model, {7, 100, 0, 255}, 0);
+    Telemetry telemetry;
+    std::vector<uint32_t> told_at;
+    for (uint32_t now_ms = 0; now_ms < 5000; now_ms += 7) {
+        if (said_at(now_ms, tile, &telemetry) == "t") {
+            told_at.push_back(now_ms);
+        }
+    }
+    CHECK(told_at == std::vector<uint32_t>{1001, 2002, 3003, 4004});
+}
+
+TEST_CASE_FIXTURE(Fixture, "an error is said once, before all else") {
+    Tile tile(model, {7, 100, 0, 255}, 0);
+    Telemetry telemetry;
+    telemetry.failed(Error::Stack);
+    telemetry.failed(Error::Settings);
+    telemetry.failed(Error::Stack);
+    const uint32_t now_ms = end_period(tile, 0);
+    telemetry.period_ended(tile);
+    CHECK(said_at(now_ms, tile, &telemetry) == "EETN");
+    telemetry.failed(Error::Settings);
+    CHECK(said_at(now_ms, tile, &telemetry) == "");
+}
+
+TEST_CASE_FIXTURE(Fixture, "what waits when its successor is due is dropped and counted") {
+    Tile tile(model, {7, 100, 0, 255}, 0);
+    Telemetry telemetry;
+    uint32_t now_ms = 0;
+    for (int period = 0; period < 4; ++period) {
+        now_ms = end_period(tile, now_ms);
+        telemetry.period_ended(tile);
+    }
+    telemetry.drop();
+    CHECK(said_at(now_ms, tile, &telemetry) == "TN");
+    Sentence sentence;
+    CHECK(telemetry.write(tile, {}, 1000, &sentence));
+    CHECK(text_of(sentence).find(",7*") != std::string::npos); // three of each, and one
 }

@@ -126,7 +126,7 @@ struct Fixture {
 } // namespace
 
 TEST_CASE_FIXTURE(Fixture, "tiles in step do what cells in step do, update by update") {
-    Array square(model, {0, 100, 0}, kSquare);
+    Array square(model, {0, 100, 0, 255}, kSquare);
     for (int updates = 1; updates <= 40; ++updates) {
         square.run_until(100 * updates + 50);
         const auto expected = square_after(updates);
@@ -141,7 +141,7 @@ TEST_CASE_FIXTURE(Fixture, "tiles in step do what cells in step do, update by up
 
 TEST_CASE_FIXTURE(Fixture,
                   "at boot a tile tells its seed on all sides and shows nothing before its first update") {
-    Tile tile(model, {0, 100, 0}, 5000);
+    Tile tile(model, {0, 100, 0, 255}, 5000);
     uint8_t wire[kMaxFrame];
     FrameDecoder decoder(6);
     for (uint8_t i = 0; i < kSides; ++i) {
@@ -167,7 +167,7 @@ TEST_CASE_FIXTURE(Fixture,
 }
 
 TEST_CASE_FIXTURE(Fixture, "what was not taken in time is replaced: the latest value wins") {
-    Tile tile(model, {0, 100, 0}, 0);
+    Tile tile(model, {0, 100, 0, 255}, 0);
     for (uint32_t now_ms = 0; now_ms < 350; ++now_ms) {
         tile.tick(now_ms);
     }
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(Fixture, "what was not taken in time is replaced: the latest v
 }
 
 TEST_CASE_FIXTURE(Fixture, "the phase of the updates is that of the boot, however late the calls come") {
-    Tile tile(model, {0, 100, 0}, 0xFFFFFF00); // the clock wraps on the way
+    Tile tile(model, {0, 100, 0, 255}, 0xFFFFFF00); // the clock wraps on the way
     Numbers gaps(7);
     uint32_t last_updates = 0;
     for (uint32_t passed_ms = 0; passed_ms < 20000; passed_ms += gaps.draw(1, 9)) {
@@ -199,7 +199,7 @@ TEST_CASE_FIXTURE(Fixture, "the phase of the updates is that of the boot, howeve
 }
 
 TEST_CASE_FIXTURE(Fixture, "periods that were missed are left out, not made up for") {
-    Tile tile(model, {0, 100, 0}, 0);
+    Tile tile(model, {0, 100, 0, 255}, 0);
     for (uint32_t now_ms = 0; now_ms < 150; ++now_ms) {
         tile.tick(now_ms);
     }
@@ -214,7 +214,7 @@ TEST_CASE_FIXTURE(Fixture, "periods that were missed are left out, not made up f
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile that is to stop keeps its state, and goes on telling it every period") {
-    Array square(model, {0, 100, 3}, kSquare);
+    Array square(model, {0, 100, 3, 255}, kSquare);
     square.run_until(350);
     const auto stopped = message_of(square[0]);
     const uint32_t sent = square[0].link(Side::East).counters().sent;
@@ -229,7 +229,7 @@ TEST_CASE_FIXTURE(Fixture, "a tile that is to stop keeps its state, and goes on 
 }
 
 TEST_CASE_FIXTURE(Fixture, "a restarted tile is the seed, shows nothing, and begins its updates again") {
-    Array square(model, {0, 100, 3}, kSquare);
+    Array square(model, {0, 100, 3, 255}, kSquare);
     square.run_until(1000);
     square[2].restart();
     CHECK(square[2].shown() == Tile::kNothing);
@@ -242,9 +242,61 @@ TEST_CASE_FIXTURE(Fixture, "a restarted tile is the seed, shows nothing, and beg
     CHECK(square[2].link(Side::North).counters().lost == 0);
 }
 
+TEST_CASE_FIXTURE(Fixture, "a new period counts from the end of the last one and keeps the state") {
+    Tile tile(model, {0, 1000, 0, 255}, 0);
+    uint32_t now_ms = 0;
+    const auto run_until = [&](uint32_t end_ms) {
+        while (now_ms < end_ms) {
+            tile.tick(now_ms++);
+        }
+    };
+    run_until(2300);
+    REQUIRE(tile.updates() == 2);
+    const auto before = message_of(tile);
+    tile.apply({9, 100, 0, 255}); // the next one was due at 2100
+    CHECK(message_of(tile) == before);
+    CHECK(tile.updates() == 2);
+    run_until(2350);
+    CHECK(tile.updates() == 3);
+    CHECK(tile.period_ended_ms() == 2300);
+    run_until(2450);
+    CHECK(tile.updates() == 4);
+    tile.apply({9, 2000, 0, 255});
+    run_until(4399);
+    CHECK(tile.updates() == 4);
+    run_until(4450);
+    CHECK(tile.updates() == 5);
+    uint8_t wire[kMaxFrame];
+    FrameDecoder decoder(6);
+    for (uint8_t at = 0, size = tile.take_frame(Side::South, wire); at < size; ++at) {
+        decoder.feed(wire[at]);
+    }
+    CHECK(decoder.header().tile == 9);
+    CHECK(decoder.header().side == Side::South);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile told to do fewer updates than it has done stops, to do more goes on") {
+    Array alone(model, {0, 100, 0, 255}, kAlone);
+    alone.run_until(1050);
+    alone[0].apply({0, 100, 5, 255});
+    alone.run_until(2050);
+    CHECK(alone[0].updates() == 10);
+    alone[0].apply({0, 100, 12, 255});
+    alone.run_until(3050);
+    CHECK(alone[0].updates() == 12);
+}
+
+TEST_CASE_FIXTURE(Fixture, "neighbours know whom they hear, and from which side") {
+    Array square(model, {77, 100, 0, 255}, kSquare);
+    square.run_until(50);
+    CHECK(square[0].link(Side::East).neighbour() == 77);
+    CHECK(square[0].link(Side::East).neighbour_side() == Side::West);
+    CHECK(square[3].link(Side::North).neighbour_side() == Side::South);
+}
+
 TEST_CASE_FIXTURE(Fixture,
                   "a tile taken away is a zero state after four periods and 20 ms, and may come back") {
-    Array square(model, {0, 100, 0}, kSquare);
+    Array square(model, {0, 100, 0, 255}, kSquare);
     square.run_until(1050);
     square.take_away(1);
     square.run_until(1050 + 370);
@@ -261,7 +313,7 @@ TEST_CASE_FIXTURE(Fixture,
 }
 
 TEST_CASE_FIXTURE(Fixture, "dropped frames are counted as lost and stop nobody") {
-    Array square(model, {0, 20, 0}, kSquare);
+    Array square(model, {0, 20, 0, 255}, kSquare);
     int dropped = 0;
     square.fault = [&](std::vector<uint8_t> frame) {
         const bool drop = numbers.chance(30);
@@ -286,7 +338,7 @@ TEST_CASE_FIXTURE(Fixture, "dropped frames are counted as lost and stop nobody")
 }
 
 TEST_CASE_FIXTURE(Fixture, "flipped bits never reach a state: each damaged frame is corrupt") {
-    Array square(model, {0, 20, 0}, kSquare);
+    Array square(model, {0, 20, 0, 255}, kSquare);
     int damaged = 0;
     square.fault = [&](std::vector<uint8_t> frame) {
         if (numbers.chance(20)) {
@@ -311,7 +363,7 @@ TEST_CASE_FIXTURE(Fixture, "flipped bits never reach a state: each damaged frame
 }
 
 TEST_CASE_FIXTURE(Fixture, "doubled frames change no state, only the counters") {
-    Array square(model, {0, 100, 0}, kSquare);
+    Array square(model, {0, 100, 0, 255}, kSquare);
     square.fault = [](std::vector<uint8_t> frame) { return std::vector<std::vector<uint8_t>>{frame, frame}; };
     square.run_until(2050);
     const auto expected = square_after(20);
@@ -323,7 +375,8 @@ TEST_CASE_FIXTURE(Fixture, "doubled frames change no state, only the counters") 
 
 TEST_CASE_FIXTURE(Fixture, "a neighbour of another model is absent") {
     const Model other = random.model(0x1234);
-    Tile tile(model, {0, 100, 0}, 0), stranger(other, {0, 100, 0}, 0), alone(model, {0, 100, 0}, 0);
+    Tile tile(model, {0, 100, 0, 255}, 0), stranger(other, {0, 100, 0, 255}, 0),
+        alone(model, {0, 100, 0, 255}, 0);
     for (uint32_t now_ms = 0; now_ms < 1050; ++now_ms) {
         stranger.tick(now_ms);
         if (stranger.has_frame(Side::West)) {
@@ -341,7 +394,7 @@ TEST_CASE_FIXTURE(Fixture, "a neighbour of another model is absent") {
 }
 
 TEST_CASE_FIXTURE(Fixture, "random bytes on every side at full rate change nothing") {
-    Array alone(model, {0, 100, 0}, kAlone), deafened(model, {0, 100, 0}, kAlone);
+    Array alone(model, {0, 100, 0, 255}, kAlone), deafened(model, {0, 100, 0, 255}, kAlone);
     Numbers noise(8);
     for (uint32_t now_ms = 0; now_ms < 5050; ++now_ms) {
         for (int i = 0; i < 4 * kSides; ++i) {

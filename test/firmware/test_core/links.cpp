@@ -20,7 +20,7 @@ struct Pair {
     std::vector<uint8_t> next_frame(int8_t first_message = 1) {
         const int8_t message[kChannels] = {first_message, -2, 3};
         uint8_t wire[kMaxFrame];
-        return {wire, wire + neighbour.send(message, wire)};
+        return {wire, wire + neighbour.send(Side::West, 200, message, wire)};
     }
 
     void deliver(const std::vector<uint8_t>& bytes, uint32_t now_ms) {
@@ -50,6 +50,8 @@ TEST_CASE("nobody is there until the first frame") {
     CHECK(pair.link.message()[0] == -7);
     CHECK(pair.link.message()[2] == 3);
     CHECK(pair.link.age_ms(1234) == 234);
+    CHECK(pair.link.neighbour() == 200);
+    CHECK(pair.link.neighbour_side() == Side::West);
     CHECK(pair.link.counters().received == 1);
     CHECK(pair.link.counters().lost == 0);
 }
@@ -132,12 +134,40 @@ TEST_CASE("a neighbour with another model is absent at once, and back at once wi
     REQUIRE(pair.link.alive());
     const int8_t message[kChannels] = {5, 5, 5};
     uint8_t wire[kMaxFrame];
-    const uint8_t size = foreigner.send(message, wire);
+    const uint8_t size = foreigner.send(Side::East, 9, message, wire);
     pair.deliver({wire, wire + size}, 10);
     CHECK_FALSE(pair.link.alive());
+    CHECK(pair.link.foreign());
+    CHECK(pair.link.neighbour() == 200); // that of the last good frame
     CHECK(pair.link.counters().foreign == 1);
     CHECK(pair.link.counters().received == 1);
     CHECK(pair.link.age_ms(110) == 110);
     pair.deliver(pair.next_frame(), 20);
     CHECK(pair.link.alive());
+    CHECK_FALSE(pair.link.foreign());
+}
+
+TEST_CASE("a stranger that falls silent is no longer there") {
+    Pair pair;
+    Link foreigner(0x1234, kChannels, kTimeoutMs);
+    const int8_t message[kChannels] = {5, 5, 5};
+    uint8_t wire[kMaxFrame];
+    const uint8_t size = foreigner.send(Side::East, 9, message, wire);
+    pair.deliver({wire, wire + size}, 0xFFFFFF00);
+    pair.link.tick(0xFFFFFF00 + kTimeoutMs);
+    CHECK(pair.link.foreign());
+    pair.link.tick(0xFFFFFF01 + kTimeoutMs);
+    CHECK_FALSE(pair.link.foreign());
+    pair.link.tick(0xFFFFFF01); // the same age again, 49 days later
+    CHECK_FALSE(pair.link.foreign());
+}
+
+TEST_CASE("a new time-out holds from then on") {
+    Pair pair;
+    pair.deliver(pair.next_frame(), 1000);
+    pair.link.set_timeout(50);
+    pair.link.tick(1050);
+    CHECK(pair.link.alive());
+    pair.link.tick(1051);
+    CHECK_FALSE(pair.link.alive());
 }

@@ -157,7 +157,8 @@ bool Tile::lit(avr::PinId pin) {
 uint8_t Tile::segments() {
     unsigned mask = 0;
     for (unsigned i = 0; i < 8; i++) {
-        mask |= static_cast<unsigned>(lit(on_chip(board::kSegments[i]))) << i;
+        // Dimmed by its timer it is lit all the time, as far as eyes can tell.
+        mask |= static_cast<unsigned>(chip_.duty(on_chip(board::kSegments[i])) > 0) << i;
     }
     return static_cast<uint8_t>(mask);
 }

@@ -1,0 +1,31 @@
+// How the chip started, what it runs, how far its stack has been, and the watchdog that starts it again.
+#pragma once
+
+#include <stdint.h>
+
+namespace tilenca {
+namespace board {
+
+// Bits of MCUSR. Where a boot loader has cleared it, as the stock one does, what survived in SRAM tells a
+// power-on from a reset.
+uint8_t reset_cause();
+constexpr uint8_t kWatchdogReset = 1 << 3;
+
+// Where in flash the program hung, as a byte address, if the watchdog's interrupt restarted it; else 0.
+uint32_t hung_at();
+
+// CRC-32 of the program as it lies in flash. Takes a quarter of a second.
+uint32_t firmware_id();
+
+// From now on the program is restarted if it does not call watchdog_feed() for a quarter of a second.
+void watchdog_begin();
+void watchdog_feed();
+
+// Looks at a few bytes of the stack's room; call it in every turn of the main loop.
+void stack_watch();
+
+// Bytes of it that were never used, as far as seen.
+uint16_t stack_unused();
+
+} // namespace board
+} // namespace tilenca

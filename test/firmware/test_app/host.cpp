@@ -1,0 +1,181 @@
+#include <doctest/doctest.h>
+
+#include <string.h>
+
+#include "../support.h"
+#include "app/appearance.h"
+#include "app/host.h"
+#include "lines.h"
+
+using namespace tilenca;
+using test::line_of;
+using test::Numbers;
+using test::RandomModel;
+using test::text_of;
+
+namespace {
+
+constexpr Settings kDefaults = {0, 100, 0, 255};
+
+// A tile, what its host says, and an EEPROM that may be broken.
+struct Fixture {
+    Numbers numbers{3};
+    RandomModel random{6, 12, 10, 3, numbers, 30};
+    Model model = random.model();
+    Tile tile{model, {7, 100, 0, 255}, 0};
+    const Boot boot{1, 0x1234ABCD};
+    Host host{kDefaults, boot};
+    bool broken = false;
+    uint32_t now_ms = 500;
+    int writes = 0;
+
+    // Everything the tile answers, in one text.
+    std::string answers(const std::vector<uint8_t>& bytes) {
+        std::string text;
+        for (uint8_t byte : bytes) {
+            Sentence sentence;
+            Host::Result result = host.receive(byte, &tile, now_ms, &sentence);
+            if (result == Host::Result::Store) {
+                ++writes;
+                uint8_t kept[kSettingsSize];
+                memcpy(kept, host.block(), sizeof kept);
+                kept[5] ^= broken;
+                host.stored(kept, &tile, &sentence);
+                result = Host::Result::Answer;
+            }
+            text += result == Host::Result::Answer ? text_of(sentence) : "";
+        }
+        return text;
+    }
+
+    std::string answer(const std::string& body) {
+        Sentence line; // has the same framing
+        line.begin(body.c_str());
+        line.end();
+        return answers({line.bytes(), line.bytes() + line.size()});
+    }
+};
+
+} // namespace
+
+TEST_CASE_FIXTURE(Fixture, "asked, a tile greets") {
+    Sentence hello;
+    write_hello(tile, boot, &hello);
+    CHECK(answer("ASK") == text_of(hello));
+}
+
+TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered with what holds") {
+    CHECK(answer("SET,period,20") == line_of("answer to a period"));
+    CHECK(tile.settings().period_ms == 20);
+    CHECK(answer("SET,preset,paper") == line_of("answer to a preset"));
+    CHECK(tile.settings().period_ms == 2000);
+    CHECK(tile.settings().updates == 30);
+    CHECK(answer("SET,brightness,9").find("$ACK,7,SET,brightness,9*") == 0);
+    CHECK(answer("SET,id,9") == line_of("answer to a new id"));
+    answer("SET,preset,default");
+    CHECK(tile.settings().period_ms == kDefaults.period_ms);
+    CHECK(tile.settings().updates == kDefaults.updates);
+    CHECK(tile.settings().tile_id == 9);
+    CHECK(tile.settings().brightness == 9);
+    answer("SET,updates,65535");
+    CHECK(tile.settings().updates == 65535);
+    CHECK(writes == 6);
+    Settings kept;
+    CHECK(parse_settings(host.block(), &kept));
+    CHECK(kept.tile_id == 9);
+}
+
+TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
+    for (const char* wrong : {"SET,period,9", "SET,period,10001", "SET,id,256", "SET,updates,65536",
+                              "SET,brightness,256", "SET,preset,fast", "SET,preset,", "SET,colour,3",
+                              "SET,id,", "SET,id,-1", "SET,id", "SET,id,1,2", "SET"}) {
+        CAPTURE(wrong);
+        CHECK(answer(wrong) == line_of("a value out of range"));
+    }
+    CHECK(tile.settings().period_ms == 100);
+    CHECK(writes == 0);
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "an EEPROM that does not keep what it is given is told, and the old settings stay") {
+    broken = true;
+    CHECK(answer("SET,period,20") == line_of("an EEPROM that does not keep"));
+    CHECK(tile.settings().period_ms == 100);
+}
+
+TEST_CASE_FIXTURE(Fixture, "what cannot be obeyed is answered too") {
+    CHECK(answer("FLY") == line_of("a command nobody knows"));
+    CHECK(answers({'$', 'A', '*', '0', '0'}) == line_of("a damaged command"));
+    CHECK(answers(std::vector<uint8_t>(1, '$')) == "");
+    CHECK(answers(std::vector<uint8_t>(100, 'x')) == line_of("a command too long"));
+    for (const char* wrong : {"ASK,1", "BLINK", "BLINK,61", "BLINK,x", "BLINK,1,1", "RESTART,now"}) {
+        CAPTURE(wrong);
+        CHECK(answer(wrong).find(",VALUE,") != std::string::npos);
+    }
+}
+
+TEST_CASE_FIXTURE(Fixture, "restart is as the button") {
+    while (tile.updates() < 3) {
+        tile.tick(now_ms += 10);
+    }
+    CHECK(answer("RESTART") == line_of("answer to restart"));
+    CHECK(tile.updates() == 0);
+    CHECK(tile.shown() == Tile::kNothing);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a face blinks as long as told, across the wrap of the clock") {
+    now_ms = 0xFFFFF000;
+    CHECK_FALSE(host.blinking(now_ms));
+    CHECK(answer("BLINK,5") == line_of("answer to blink"));
+    CHECK(host.blinking(now_ms));
+    CHECK(host.blinking(now_ms + 4999));
+    CHECK_FALSE(host.blinking(now_ms + 5000));
+    CHECK_FALSE(host.blinking(now_ms)); // 49 days later
+    answer("BLINK,60");
+    CHECK(host.blinking(now_ms));
+    answer("BLINK,0");
+    CHECK_FALSE(host.blinking(now_ms));
+}
+
+TEST_CASE_FIXTURE(Fixture, "any bytes are survived, and the next command is obeyed") {
+    Numbers noise(11);
+    for (int i = 0; i < 300; ++i) {
+        answers(noise.draw_all<uint8_t>(noise.draw(0, 400), 0, 255));
+        const std::string text = answer("RESTART");
+        CHECK(text.find("ACK,7,RESTART") != std::string::npos);
+    }
+    CHECK(tile.settings().period_ms == 100);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its links on the debug LEDs") {
+    CHECK(appearance_of(tile, false, 0).look.segments == 0);
+    uint32_t at_ms = 500;
+    while (tile.shown() == Tile::kNothing) {
+        tile.tick(at_ms += 10);
+    }
+    const Look look = model.looks[tile.shown()];
+    CHECK_FALSE(appearance_of(tile, false, 0).look != look);
+    CHECK(appearance_of(tile, true, 0).look.segments == 0);
+    CHECK(appearance_of(tile, true, 256).look.segments == 0xFF);
+    CHECK(appearance_of(tile, false, 0).leds == 0);
+
+    const int8_t message[6] = {};
+    uint8_t wire[kMaxFrame];
+    Link friendly(0xBEEF, 6, 1000), stranger(0x1234, 6, 1000);
+    for (uint8_t at = 0, size = friendly.send(Side::South, 3, message, wire); at < size; ++at) {
+        tile.receive(Side::North, wire[at], at_ms);
+    }
+    for (uint8_t at = 0, size = stranger.send(Side::East, 4, message, wire); at < size; ++at) {
+        tile.receive(Side::West, wire[at], at_ms);
+    }
+    CHECK(appearance_of(tile, false, 0).leds == 0x1);
+    CHECK(appearance_of(tile, false, 256).leds == 0x9);
+    CHECK(appearance_of(tile, false, 512).leds == 0x1);
+}
+
+TEST_CASE("brightness scales a colour") {
+    CHECK(scaled(70, 255) == 70);
+    CHECK(scaled(255, 255) == 255);
+    CHECK(scaled(70, 0) == 0);
+    CHECK(scaled(100, 128) == 50);
+}
