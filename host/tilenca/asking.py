@@ -12,6 +12,8 @@ from tilenca.telemetry import Event, PortNews
 # bootloader takes whatever it is sent for the beginning of a command, and waits for more. So nobody is asked
 # who has not spoken before (a running tile does so every second), or had the time to.
 BOOT_S = 3.0
+# What comes right after opening may be from before the reset.
+STALE_S = 0.3
 # How often to ask again, and when to give up on a tile that says nothing.
 AGAIN_S = 1.0
 PATIENCE_S = 7.0
@@ -34,26 +36,36 @@ class Answer:
 
 
 class _Asked:
-    """One tile while it is asked."""
+    """One tile while it is asked: `ask_s` is when to ask it next, `end_s` when to give up."""
 
     def __init__(self, patience_s: float) -> None:
         self.answer: Answer | None = None
         self.ask_s = self.end_s = float("inf")
+        self._opened_s = 0.0
         self._patience_s = patience_s
+
+    def begin(self, now_s: float, ask_s: float) -> None:
+        """The port is open."""
+        self._opened_s, self.ask_s, self.end_s = now_s, ask_s, now_s + self._patience_s
+
+    def asked(self, now_s: float) -> None:
+        """The question was sent."""
+        self.ask_s = now_s + AGAIN_S
+        self._opened_s = float("inf")
 
     def take(self, event: Event, now_s: float) -> None:
         """Adds what was heard from its port."""
         if isinstance(event, PortNews):
             if event.is_open:
-                self.ask_s, self.end_s = now_s + BOOT_S, now_s + self._patience_s
+                self.begin(now_s, now_s + BOOT_S)
             else:
                 self.answer = Answer(problem=event.reason.removesuffix("; waiting for it"))
         elif isinstance(event.sentence, HelloSentence):
             self.answer = Answer(event.sentence)
         elif isinstance(event.sentence, OtherVersionSentence):
             self.answer = Answer(problem=f"speaks protocol {event.sentence.version}")
-        elif event.sentence is not None and self.ask_s > now_s + AGAIN_S:
-            self.ask_s = now_s
+        elif event.sentence is not None and now_s >= self._opened_s + STALE_S:
+            self.ask_s = min(self.ask_s, now_s)
 
 
 def ask_all(
@@ -87,7 +99,7 @@ def ask(
     """As `ask_all`, with ports that stay open; `hear` gets all that tiles say meanwhile."""
     asked = {name: _Asked(patience_s) for name in names}
     for name in asked.keys() & set(reader.open):
-        asked[name].ask_s, asked[name].end_s = time.monotonic(), time.monotonic() + patience_s
+        asked[name].begin(time.monotonic(), time.monotonic())
     waiting = set(asked)
     while waiting:
         for event in reader.poll(TICK_S):
@@ -103,6 +115,6 @@ def ask(
                 waiting.discard(name)
                 report(name, tile.answer)
             elif now_s >= tile.ask_s:
-                tile.ask_s = now_s + AGAIN_S
+                tile.asked(now_s)
                 reader.write(name, ask_command())
     return {name: tile.answer or Answer(problem=SILENT) for name, tile in asked.items()}

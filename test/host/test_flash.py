@@ -92,6 +92,31 @@ def test_boards_are_programmed_side_by_side_and_one_bad_board_stops_no_other(fir
     assert "3 of 9 flashed" in chatter
 
 
+def test_what_may_pass_is_tried_once_more_and_what_cannot_is_not(firmware: Path) -> None:
+    with (
+        StandIn(mute_after=5, recovers=True) as hung,
+        StandIn(decayed=0x123, recovers=True) as disturbed,
+        StandIn(signature=ATMEGA_328P) as wrong,
+    ):
+        status, tiles, chatter = flash(firmware, hung.port, disturbed.port, wrong.port)
+    assert status == 1, chatter
+    assert [(tiles[board.port]["result"], tiles[board.port]["attempts"]) for board in (hung, disturbed)] == [
+        ("flashed", 2)
+    ] * 2
+    assert (tiles[wrong.port]["result"], tiles[wrong.port]["attempts"]) == ("failed", 1)
+
+
+def test_the_next_call_with_failed_flashes_those_and_no_other(firmware: Path) -> None:
+    with StandIn() as good, StandIn(decayed=0x123) as bad:
+        assert flash(firmware, good.port, bad.port)[0] == 1
+        bad.decayed = None
+        status, tiles, _ = flash(firmware, good.port, bad.port, options=("--failed",))
+        assert (status, list(tiles)) == (0, [bad.port])
+        status, tiles, chatter = flash(firmware, good.port, bad.port, options=("--failed",))
+    assert (status, tiles) == (0, {})
+    assert "nothing to do" in chatter
+
+
 def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> None:
     with StandIn() as first, StandIn() as second, StandIn() as third:
         boards = (first, second, third)
