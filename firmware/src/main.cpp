@@ -68,11 +68,11 @@ void tick(uint32_t now_ms) {
     if (button.pressed(board::button_closed(), now_ms)) {
         tile.restart();
     }
-    const uint32_t before_us = board::now_us();
+    const uint16_t before = board::stamp();
     const bool was_busy = tile.busy();
     const bool ended = tile.tick(now_ms);
     if (was_busy) {
-        timing.computed(board::now_us() - before_us, ended);
+        timing.computed(board::stamp() - before, ended);
     }
     if (ended) {
         telemetry.period_ended(tile);
@@ -116,18 +116,22 @@ void obey(uint32_t now_ms) {
 }
 
 void show(uint32_t now_ms) {
-    static Look shown;
+    static uint8_t shown = Tile::kNothing;
     static uint8_t brightness = 0;
+    static uint8_t leds = 0;
     const Appearance now = appearance_of(tile, host.blinking(now_ms), now_ms);
-    if (now.look != shown || tile.settings().brightness != brightness) {
-        shown = now.look;
+    if (now.shown != shown || tile.settings().brightness != brightness) {
+        shown = now.shown;
         brightness = tile.settings().brightness;
-        board::show_segments(shown.segments, brightness);
-        board::show_colour(scaled(shown.red, brightness), scaled(shown.green, brightness),
-                           scaled(shown.blue, brightness));
+        const Look look = look_of(tile, shown);
+        board::show_segments(look.segments, brightness);
+        board::show_colour(look.red, look.green, look.blue);
     }
-    for (uint8_t i = 0; i < kSides; ++i) {
-        board::show_led(i, now.leds >> i & 1);
+    if (now.leds != leds) {
+        leds = now.leds;
+        for (uint8_t i = 0; i < kSides; ++i) {
+            board::show_led(i, leds >> i & 1);
+        }
     }
 }
 
@@ -153,9 +157,9 @@ void report(uint32_t now_ms) {
 }
 
 void sleep() {
-    const uint32_t before_us = board::now_us();
+    const uint16_t before = board::stamp();
     board::sleep();
-    timing.slept(board::now_us() - before_us);
+    timing.slept(board::stamp() - before);
 }
 
 } // namespace
@@ -176,8 +180,8 @@ void setup() {
 
 void loop() {
     board::watchdog_feed();
-    timing.turn(board::now_us());
     const uint32_t now_ms = board::now_ms();
+    timing.turn(now_ms, board::stamp());
     read_sides(now_ms);
     tick(now_ms);
     write_sides();

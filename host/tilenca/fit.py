@@ -23,15 +23,15 @@ LOOK_BYTES = 5
 
 SRAM_BYTES = 8192
 # Variables and the deepest stack, less what `buffer_bytes` counts.
-OTHER_SRAM_BYTES = 1962
+OTHER_SRAM_BYTES = 2375
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the
 # emulated chip and fitted by `python tools/cycles.py`, which prints them anew when the firmware changes.
-CYCLES_PER_MAC = 22.326
-CYCLES_PER_OUTPUT = 402.37
-CYCLES_PER_CHANNEL = 2581.7
-CYCLES_PER_UPDATE = 43746.0
-CYCLES_PER_MS = 1778.1  # updating or not
+CYCLES_PER_MAC = 21.116
+CYCLES_PER_OUTPUT = 490.89
+CYCLES_PER_CHANNEL = 2916.0
+CYCLES_PER_UPDATE = 47386.0
+CYCLES_PER_MS = 2312.0  # updating or not
 
 CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10

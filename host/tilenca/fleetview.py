@@ -8,8 +8,8 @@ from rich.text import Text
 
 from tilenca.fleetgrid import trouble
 from tilenca.tables import table
-from tilenca.telemetry import Event, Fleet, PortNews, TileView, type_of
-from tilenca.wording import printable, words
+from tilenca.telemetry import Event, Fleet, PortNews, TileView
+from tilenca.wording import printable, said
 
 
 def clock_text(time_s: float) -> str:
@@ -30,7 +30,7 @@ def log_line(event: Event) -> str:
         return f"{head} - PORT {port_words(event)}"
     if event.sentence is None:
         return f"{head} - DAMAGED {printable(event.raw)}"
-    return f"{head} tile {event.sentence.tile} {type_of(event.sentence)} {words(event.sentence)}"
+    return f"{head} {said(event.sentence)}"
 
 
 HEADER = (

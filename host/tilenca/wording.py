@@ -11,6 +11,7 @@ from tilenca.protocol import (
     TileSentence,
     TimeSentence,
 )
+from tilenca.telemetry import type_of
 
 SHOWN_BYTES = 60
 # Bits of MCUSR.
@@ -33,6 +34,11 @@ def printable(raw: bytes) -> str:
 def reset_words(cause: int) -> str:
     """The causes of a reset; "unknown" where no bit is set."""
     return " and ".join(name for bit, name in enumerate(RESET_CAUSES) if cause >> bit & 1) or "unknown"
+
+
+def said(sentence: Sentence) -> str:
+    """Who says what: the tile's id, the sentence's name, and its words."""
+    return f"tile {sentence.tile} {type_of(sentence)} {words(sentence)}"
 
 
 def words(sentence: Sentence) -> str:

@@ -13,6 +13,7 @@ import pytest
 from conftest import Compile
 
 from tilenca import cli
+from tilenca.ihex import firmware_id, parse_hex
 from tilenca.paths import FIRMWARE_ELF
 from tilenca.recording import read_recording
 
@@ -48,11 +49,14 @@ def test_json_of_one_shape_is_one_object(capsys: pytest.CaptureFixture[str]) -> 
     status, out, _ = emulate(capsys, "--shape", "1", "--json")
     report = json.loads(out)
     assert set(report) == {
-        "shape", "model_id", "simulated_s", "wall_s", "tiles", "all_right", "agreed_at_s", "agreed_at_update",
+        "shape", "model_id", "firmware_id", "simulated_s", "wall_s", "tiles", "all_right", "agreed_at_s",
+        "agreed_at_update",
     }  # fmt: skip
     assert status == 0
     assert report["shape"] == "1"
     assert re.fullmatch("[0-9A-F]{4}", report["model_id"])
+    image = parse_hex(FIRMWARE_ELF.with_suffix(".hex").read_text())
+    assert report["firmware_id"] == f"{firmware_id(image):08X}"
     assert report["all_right"] is True
     assert [(tile["id"], tile["row"], tile["col"]) for tile in report["tiles"]] == [
         (i + 1, i, 0) for i in range(5)

@@ -8,17 +8,17 @@
 namespace tilenca {
 
 struct Appearance {
-    Look look;    // dark while nothing is shown
-    uint8_t leds; // one bit per side, in the order N E S W
+    uint8_t shown; // a class, Tile::kNothing: dark, or kFound
+    uint8_t leds;  // one bit per side, in the order N E S W
+
+    static constexpr uint8_t kFound = 0xFE;
 };
 
-// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: all
-// segments and white blink instead of the class, as no shape does.
+// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: a
+// white 8 blinks instead of the class.
 Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms);
 
-// A colour's duty at a brightness, both of 255.
-inline uint8_t scaled(uint8_t duty, uint8_t brightness) {
-    return static_cast<uint8_t>(static_cast<uint16_t>(duty) * brightness / 255);
-}
+// How that looks, at the tile's brightness.
+Look look_of(const Tile& tile, uint8_t shown);
 
 } // namespace tilenca

@@ -1,4 +1,6 @@
-// Where a tile's time goes, from one report to the next. Microseconds come in as numbers.
+// Where a tile's time goes, from one report to the next.
+//
+// Short times are differences of stamps: half microseconds, modulo 2^16, which are cheap to take.
 #pragma once
 
 #include <stdint.h>
@@ -8,51 +10,57 @@ namespace tilenca {
 class Timing {
   public:
     // Call it at the beginning of every turn of the main loop.
-    void turn(uint32_t now_us) {
-        const uint32_t gap_us = now_us - turn_us_;
-        if (started_ && gap_us > gap_us_) {
-            gap_us_ = gap_us;
-        }
-        if (!started_) {
-            reported_us_ = now_us;
-        }
-        started_ = true;
-        turn_us_ = now_us;
-    }
-
-    // Of a slice of an update; `ended`: it was the last one.
-    void computed(uint32_t us, bool ended) {
-        update_us_ += us;
-        if (ended) {
-            compute_us_ = update_us_ > compute_us_ ? update_us_ : compute_us_;
-            update_us_ = 0;
+    void turn(uint32_t now_ms, uint16_t stamp) {
+        const uint32_t passed_ms = now_ms - turn_ms_;
+        const uint32_t halves =
+            passed_ms < kStampWrapsMs ? static_cast<uint16_t>(stamp - turn_stamp_) : passed_ms * kHalvesPerMs;
+        turn_ms_ = now_ms;
+        turn_stamp_ = stamp;
+        if (started_) {
+            gap_ = halves > gap_ ? halves : gap_;
+        } else {
+            started_ = true;
+            reported();
         }
     }
 
-    void slept(uint32_t us) { slept_us_ += us; }
+    // Of a slice of an update; `last`: the update is done.
+    void computed(uint16_t halves, bool last) {
+        update_ += halves;
+        if (last) {
+            compute_ = update_ > compute_ ? update_ : compute_;
+            update_ = 0;
+        }
+    }
+
+    void slept(uint16_t halves) { slept_ += halves; }
 
     // Since the last reported(): the longest update and turn, and the share of time not asleep.
-    uint32_t compute_us() const { return compute_us_; }
-    uint32_t gap_us() const { return gap_us_; }
+    uint32_t compute_us() const { return compute_ / 2; }
+    uint32_t gap_us() const { return gap_ / 2; }
     uint16_t awake_permille() const {
-        const uint32_t passed_ms = (turn_us_ - reported_us_) / 1000;
-        const uint32_t asleep = passed_ms == 0 ? 0 : slept_us_ / passed_ms;
+        const uint32_t passed_ms = turn_ms_ - reported_ms_;
+        const uint32_t asleep = passed_ms == 0 ? 0 : slept_ / 2 / passed_ms;
         return asleep > 1000 ? 0 : static_cast<uint16_t>(1000 - asleep);
     }
 
     // Begins anew.
     void reported() {
-        compute_us_ = gap_us_ = slept_us_ = 0;
-        reported_us_ = turn_us_;
+        compute_ = gap_ = slept_ = 0;
+        reported_ms_ = turn_ms_;
     }
 
   private:
-    uint32_t turn_us_ = 0;
-    uint32_t reported_us_ = 0;
-    uint32_t update_us_ = 0; // of the update under way
-    uint32_t compute_us_ = 0;
-    uint32_t gap_us_ = 0;
-    uint32_t slept_us_ = 0;
+    static constexpr uint16_t kHalvesPerMs = 2000;
+    static constexpr uint8_t kStampWrapsMs = 0xFFFF / kHalvesPerMs;
+
+    uint32_t turn_ms_ = 0;
+    uint32_t reported_ms_ = 0;
+    uint32_t update_ = 0; // of the update under way
+    uint32_t compute_ = 0;
+    uint32_t gap_ = 0;
+    uint32_t slept_ = 0;
+    uint16_t turn_stamp_ = 0;
     bool started_ = false;
 };
 

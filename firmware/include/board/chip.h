@@ -16,8 +16,8 @@ void clock_begin();
 // Milliseconds since clock_begin(); wraps after 49 days. Call it at least every quarter of a second.
 uint32_t now_ms();
 
-// Microseconds, of the same clock; wraps after 71 minutes.
-uint32_t now_us();
+// Half microseconds modulo 2^16, of timer 5, which the south link has started.
+uint16_t stamp();
 
 // Sleeps until the millisecond after the one that now_ms() told last. Interrupts for single bits and bytes
 // wake the processor, but not the main loop: what they bring has room for several milliseconds.

@@ -10,8 +10,9 @@ namespace board {
 // the segments and red.
 void face_begin();
 
-// Bit 0 = segment a ... bit 6 = g, bit 7 = dp; brightness of 255, 0 is dark.
-void show_segments(uint8_t segments, uint8_t brightness);
+// Bit 0 = segment a ... bit 6 = g, bit 7 = dp; brightness of 255, 0 is dark. The decimal point
+// cannot be dimmed.
+void show_segments(uint8_t segments, uint8_t brightness = 255);
 
 // Duty of 255 each; 0 is dark.
 void show_colour(uint8_t red, uint8_t green, uint8_t blue);

@@ -15,10 +15,6 @@ struct Look {
     uint8_t red;
     uint8_t green;
     uint8_t blue;
-
-    bool operator!=(const Look& other) const {
-        return segments != other.segments || red != other.red || green != other.green || blue != other.blue;
-    }
 };
 
 struct Model {

@@ -136,7 +136,7 @@ ISR(WDT_vect, ISR_NAKED) {
 
 namespace {
 
-constexpr uint8_t kLookedAtPerTurn = 16;
+constexpr uint8_t kLookedAtPerTurn = 4;
 uint8_t* looking_at = &__heap_start;
 uint16_t unused = 0xFFFF;
 

@@ -32,17 +32,12 @@ uint32_t now_ms() {
     return now;
 }
 
-uint32_t now_us() {
+uint16_t stamp() {
     const uint8_t interrupts = SREG;
     cli();
-    uint16_t count = TCNT4;
-    uint8_t tick = ticks;
-    if (TIFR4 & 1 << TOV4 && count < kClockTop / 2) {
-        ++tick; // its interrupt is still to come
-    }
+    const uint16_t count = TCNT5; // through a register that the south link's interrupt uses too
     SREG = interrupts;
-    const uint32_t ms = now + static_cast<uint8_t>(tick - static_cast<uint8_t>(now));
-    return ms * 1000 + count / (F_CPU / 1000000);
+    return count;
 }
 
 ISR(TIMER4_OVF_vect) {

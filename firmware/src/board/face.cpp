@@ -20,8 +20,6 @@ void face_begin() {
     make_output(kGreen);
     make_output(kBlue);
     // Phase-correct 8-bit PWM at 490 Hz: unlike fast PWM it is fully dark at 0.
-    TCCR0A = 1 << WGM00;
-    TCCR0B = 1 << CS01 | 1 << CS00;
     TCCR2A = 1 << WGM20;
     TCCR2B = 1 << CS22;
     TCCR3A = 1 << WGM30;
@@ -37,15 +35,15 @@ uint16_t compare_of(uint8_t duty, uint16_t counts) {
     return static_cast<uint16_t>(static_cast<uint32_t>(duty) * counts / 255 - 1);
 }
 
-// The output of each segment's pin: the register that joins it to its timer, and by which bit. No two share a
-// compare unit with each other or with a colour.
+// The output of a segment's pin: the register that joins it to its timer, and by which bit. No two share a
+// compare unit with each other or with a colour. The decimal point's timer is timer 0, which has other work.
 struct Dimmer {
     volatile uint8_t* control;
     uint8_t bit;
 };
+constexpr uint8_t kDimmed = 7;
 
 Dimmer dimmer_of(uint8_t segment) {
-    static_assert(kSegments[0].port == 'H' && kSegments[0].bit == 4, "OC4B and so on, as below");
     switch (segment) {
     case 0:
         return {&TCCR4A, COM4B1};
@@ -54,41 +52,42 @@ Dimmer dimmer_of(uint8_t segment) {
     case 2:
         return {&TCCR3A, COM3A1};
     case 3:
-        return {&TCCR0A, COM0A1};
+        return {&TCCR1A, COM1C1};
     case 4:
         return {&TCCR1A, COM1B1};
     case 5:
         return {&TCCR2A, COM2B1};
-    case 6:
-        return {&TCCR4A, COM4C1};
     default:
-        return {&TCCR0A, COM0B1};
+        return {&TCCR4A, COM4C1};
     }
 }
 
 void set_duty_of_segments(uint8_t duty) {
     OCR4A = OCR4B = OCR4C = compare_of(duty, kClockTop);
-    OCR1B = compare_of(duty, kSouthBitCycles);
+    OCR1B = OCR1C = compare_of(duty, kSouthBitCycles);
     OCR3A = duty;
-    OCR0A = OCR0B = OCR2B = duty;
+    OCR2B = duty;
 }
 
 } // namespace
 
 void show_segments(uint8_t segments, uint8_t brightness) {
-    if (brightness != 0) {
+    if (brightness == 0) {
+        segments = 0;
+    } else {
         set_duty_of_segments(brightness);
     }
-    for (uint8_t i = 0; i < 8; ++i) {
-        const bool lit = (segments >> i & 1) && brightness != 0;
+    for (uint8_t i = 0; i < kDimmed; ++i) {
         const Dimmer dimmer = dimmer_of(i);
         // At full brightness the pin is simply high: no timer, no flicker.
-        if (lit && brightness != 0xFF) {
+        if ((segments >> i & 1) && brightness != 0xFF) {
             *dimmer.control |= 1 << dimmer.bit;
         } else {
             *dimmer.control &= ~(1 << dimmer.bit);
         }
-        set(kSegments[i], lit);
+    }
+    for (uint8_t i = 0; i < 8; ++i) {
+        set(kSegments[i], segments >> i & 1);
     }
 }
 

@@ -63,7 +63,6 @@ void south_begin() {
     TCCR1A = 1 << WGM11;
     TCCR1B = 1 << WGM13 | 1 << WGM12;
     ICR1 = kSouthBitCycles - 1;
-    OCR1C = 0; // B dims a segment
     TCNT1 = 0;
     TCCR1B |= 1 << CS10;
 }
@@ -102,8 +101,8 @@ void south_write(const uint8_t* bytes, uint8_t size) {
     toggle_at = 1;
     SOUTH_BITS = toggles[0];
     SOUTH_BITS_LEFT = 8;
-    TIFR1 = 1 << OCF1C; // an old match would make the first bit short
-    TIMSK1 = 1 << OCIE1C;
+    TIFR1 = 1 << TOV1; // an old match would make the first bit short
+    TIMSK1 = 1 << TOIE1;
 }
 
 bool south_idle() {
@@ -114,7 +113,7 @@ bool south_idle() {
 // that a receiver's sampling allows. The compiler needs twice the cycles.
 
 // First of all the line, so that every edge comes equally late; then, every eighth time, the next toggles.
-ISR(TIMER1_COMPC_vect, ISR_NAKED) {
+ISR(TIMER1_OVF_vect, ISR_NAKED) {
     __asm__ volatile("push r24 \n\t"
                      "in r24, __SREG__ \n\t"
                      "push r24 \n\t"

@@ -148,15 +148,15 @@ TEST_CASE_FIXTURE(Fixture, "any bytes are survived, and the next command is obey
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its links on the debug LEDs") {
-    CHECK(appearance_of(tile, false, 0).look.segments == 0);
+    CHECK(look_of(tile, appearance_of(tile, false, 0).shown).segments == 0);
     uint32_t at_ms = 500;
     while (tile.shown() == Tile::kNothing) {
         tile.tick(at_ms += 10);
     }
-    const Look look = model.looks[tile.shown()];
-    CHECK_FALSE(appearance_of(tile, false, 0).look != look);
-    CHECK(appearance_of(tile, true, 0).look.segments == 0);
-    CHECK(appearance_of(tile, true, 256).look.segments == 0xFF);
+    CHECK(appearance_of(tile, false, 0).shown == tile.shown());
+    CHECK(look_of(tile, tile.shown()).segments == model.looks[tile.shown()].segments);
+    CHECK(look_of(tile, appearance_of(tile, true, 0).shown).segments == 0);
+    CHECK(look_of(tile, appearance_of(tile, true, 256).shown).segments == 0x7F);
     CHECK(appearance_of(tile, false, 0).leds == 0);
 
     const int8_t message[6] = {};
@@ -173,9 +173,9 @@ TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its li
     CHECK(appearance_of(tile, false, 512).leds == 0x1);
 }
 
-TEST_CASE("brightness scales a colour") {
-    CHECK(scaled(70, 255) == 70);
-    CHECK(scaled(255, 255) == 255);
-    CHECK(scaled(70, 0) == 0);
-    CHECK(scaled(100, 128) == 50);
+TEST_CASE_FIXTURE(Fixture, "brightness scales a colour") {
+    for (const auto& [brightness, duty] : {std::pair<int, int>{255, 60}, {128, 30}, {1, 0}, {0, 0}}) {
+        tile.apply({7, 100, 0, static_cast<uint8_t>(brightness)});
+        CHECK(look_of(tile, Appearance::kFound).green == duty);
+    }
 }

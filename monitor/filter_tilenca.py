@@ -1,0 +1,32 @@
+"""Lets `pio device monitor` say in words what a tile says; `--raw` or `-f direct` shows the sentences."""
+
+import sys
+from pathlib import Path
+
+from platformio.device.monitor.filters.base import DeviceMonitorFilterBase
+
+HOST = str(Path(__file__).resolve().parents[1] / "host")
+if HOST not in sys.path:
+    sys.path.append(HOST)  # PlatformIO may run in another environment than the package's
+
+from tilenca.telemetry import LineReader  # noqa: E402
+from tilenca.wording import printable, said  # noqa: E402
+
+
+class Tilenca(DeviceMonitorFilterBase):
+    """One line of words for every sentence; what is damaged is shown as such."""
+
+    NAME = "tilenca"
+
+    def __init__(self, options: dict[str, object] | None = None) -> None:
+        """Takes PlatformIO's options, of which it needs none."""
+        super().__init__(options)
+        self._lines = LineReader()
+
+    def rx(self, text: str) -> str:
+        """The words of the sentences that `text` completes; whatever miniterm has made of other bytes."""
+        heard = self._lines.feed(text.encode("ascii", "replace"))
+        return "".join(
+            (f"DAMAGED {printable(raw)}" if sentence is None else said(sentence)) + "\r\n"
+            for raw, sentence in heard
+        )

@@ -1,0 +1,235 @@
+"""The host's commands on the chip: settings in EEPROM, the face, and nothing that stalls the tile."""
+
+import random
+from collections.abc import Iterator
+
+import pytest
+from conversation import Talk
+
+from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
+from tilenca.glyphs import GLYPHS, label_of_glyph
+from tilenca.ihex import firmware_id, parse_hex
+from tilenca.paths import FIRMWARE_ELF
+from tilenca.protocol import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    TileSentence,
+    TimeSentence,
+    ask_command,
+    blink_command,
+    framed,
+    parse_settings,
+    restart_command,
+    set_command,
+    settings_block,
+)
+
+DARK, ALL = 0, GLYPHS["8"]
+
+
+@pytest.fixture
+def talk() -> Iterator[Talk]:
+    """A lone tile that has an id and a period, past its greeting."""
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, settings_block(7, 100, 0))
+        talk = Talk(array)
+        talk.listen(0.7)
+        yield talk
+
+
+def test_the_firmware_id_is_that_of_the_hex_file(talk: Talk) -> None:
+    memory = parse_hex(FIRMWARE_ELF.with_suffix(".hex").read_text())
+    assert talk.last(HelloSentence).firmware_id == firmware_id(memory)
+
+
+def test_a_tile_speaks_within_a_fifth_of_a_second(talk: Talk) -> None:
+    with Array(FIRMWARE_ELF) as array:
+        assert any(isinstance(s, HelloSentence) for s in Talk(array).listen(0.2))
+
+
+def test_asked_it_greets_again(talk: Talk) -> None:
+    hello = talk.last(HelloSentence)
+    assert (hello.version, hello.tile, hello.period_ms, hello.updates, hello.brightness) == (
+        2,
+        7,
+        100,
+        0,
+        255,
+    )
+    assert talk.ask(ask_command()) == hello
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kept"),
+    [
+        ("id", 200, (200, 100, 0, 255)),
+        ("period", 250, (7, 250, 0, 255)),
+        ("updates", 9, (7, 100, 9, 255)),
+        ("brightness", 40, (7, 100, 0, 40)),
+        ("preset", "paper", (7, 2000, 30, 255)),
+    ],
+)
+def test_a_setting_is_kept_and_answered(talk: Talk, name: str, value: object, kept: tuple[int, ...]) -> None:
+    assert isinstance(value, int | str)
+    answer = talk.ask(set_command(name, value))
+    assert answer == AckSentence(kept[0], "SET", (name, str(value)))
+    settings = parse_settings(talk.tile.read_eeprom(0, 12))
+    assert settings is not None
+    assert (settings.tile_id, settings.period_ms, settings.updates, settings.brightness) == kept
+    talk.tile.reset()
+    talk.listen(0.3)
+    hello = talk.last(HelloSentence)
+    assert (hello.tile, hello.period_ms, hello.updates, hello.brightness) == kept
+
+
+def test_a_period_is_in_force_at_once_and_the_state_goes_on(talk: Talk) -> None:
+    before = talk.last(TileSentence).updates
+    talk.ask(set_command("period", 50))
+    talk.listen(1.0)
+    after = talk.last(TileSentence).updates
+    assert before + 18 <= after <= before + 23
+
+
+def test_a_preset_can_be_taken_back(talk: Talk) -> None:
+    built_in = talk.last(HelloSentence)
+    with Array(FIRMWARE_ELF) as array:
+        fresh = Talk(array)
+        fresh.listen(0.3)
+        built_in = fresh.last(HelloSentence)
+    talk.ask(set_command("preset", "paper"))
+    talk.ask(set_command("preset", "default"))
+    hello = talk.ask(ask_command())
+    assert isinstance(hello, HelloSentence)
+    assert (hello.period_ms, hello.updates) == (built_in.period_ms, built_in.updates)
+
+
+def test_writing_settings_stalls_neither_loop_nor_links() -> None:
+    with Array(FIRMWARE_ELF, 2, [(0, EAST, 1, WEST), (0, NORTH, 1, SOUTH)], [900.0, -900]) as array:
+        for tile in array:
+            tile.write_eeprom(0, settings_block(tile.index + 1, 100, 0))
+        talk, other = Talk(array), Talk(array, 1)
+        talk.listen(3.2)
+        usual_us = max(s.gap_us for s in talk.said if isinstance(s, TimeSentence))
+        for value in (17, 255, 3, 96, 1, 64, 8, 128):  # each changes the value and the CRC: 10 ms of writing
+            assert isinstance(talk.ask(set_command("id", value)), AckSentence)
+        new = talk.listen(1.2)
+        other.listen(0.0)
+        slowest_us = max(s.gap_us for s in new if isinstance(s, TimeSentence))
+        assert slowest_us < usual_us + 500, "writing a byte takes 3,400 us"
+        for said in (talk.said, other.said):
+            links = {s.side: s for s in said if isinstance(s, LinkSentence)}
+            assert all(link.lost == link.overruns == 0 for link in links.values())
+        assert talk.last(TimeSentence).dropped == 0
+
+
+def test_several_commands_at_once_are_all_answered(talk: Talk) -> None:
+    names = [("id", 9), ("period", 60), ("brightness", 1)]
+    talk.tile.write_serial(b"".join(set_command(*pair) for pair in names))
+    new = talk.listen(0.5)
+    assert [s.fields for s in new if isinstance(s, AckSentence)] == [(n, str(v)) for n, v in names]
+
+
+def test_what_is_no_command_is_refused_with_its_reason(talk: Talk) -> None:
+    assert talk.ask(b"$ASK*00\r\n") == NakSentence(7, "CHECKSUM")
+    assert talk.ask(b"$" + b"x" * 70) == NakSentence(7, "LONG")
+    assert talk.ask(framed("FLY,3")) == NakSentence(7, "UNKNOWN", "FLY")
+    assert talk.ask(framed("SET,period,5")) == NakSentence(7, "VALUE", "SET")
+    assert talk.tile.read_eeprom(0, 12) == settings_block(7, 100, 0)
+
+
+def test_random_bytes_at_full_rate_do_not_disturb_a_tile(talk: Talk) -> None:
+    noise = random.Random(3)
+    before = talk.last(TileSentence).updates
+    talk.tile.write_serial(noise.randbytes(11520 * 3))
+    talk.listen(3.0)
+    assert talk.last(TileSentence).updates >= before + 29
+    talk.listen(0.1)
+    talk.said.clear()
+    talk.tile.write_serial(b"\n")
+    talk.listen(0.2)
+    assert isinstance(talk.ask(ask_command()), HelloSentence)
+    assert talk.damaged == []
+
+
+def test_a_restart_begins_from_the_seed(talk: Talk) -> None:
+    talk.listen(1.0)
+    assert talk.ask(restart_command()) == AckSentence(7, "RESTART")
+    talk.listen(0.2)
+    assert talk.last(TileSentence).updates <= 3
+
+
+def test_a_face_blinks_and_then_shows_its_class_again(talk: Talk) -> None:
+    assert talk.ask(blink_command(2)) == AckSentence(7, "BLINK", ("2",))
+    before = len(talk.tile.display_changes)
+    talk.listen(2.2)
+    seen = {change.segments for change in talk.tile.display_changes[before:]}
+    assert {DARK, ALL} <= seen
+    assert len(talk.tile.display_changes) - before > 6
+    assert label_of_glyph(talk.tile.segments, tuple(GLYPHS)) == talk.last(TileSentence).label
+
+
+SEGMENT_PINS = [("H", 4), ("H", 3), ("E", 3), ("B", 7), ("B", 6), ("H", 6), ("H", 5)]
+
+
+def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
+    def duties() -> list[float]:
+        """All segments, which are lit while the face blinks; and the colour then."""
+        talk.ask(blink_command(5))
+        for _ in range(100):
+            talk.listen(0.01)
+            if talk.tile.segments == ALL:
+                break
+        return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [value / 255 for value in talk.tile.rgb]
+
+    full = duties()
+    assert full[:7] == [1.0] * 7
+    for brightness in (1, 64, 254):
+        talk.ask(set_command("brightness", brightness))
+        dimmed = duties()
+        for now, before in zip(dimmed, full, strict=True):
+            assert now == pytest.approx(before * brightness / 255, abs=0.006)
+    talk.ask(set_command("brightness", 0))
+    talk.listen(0.6)
+    assert talk.tile.segments == DARK
+    assert talk.tile.rgb == (0, 0, 0)
+    talk.ask(set_command("brightness", 255))
+    assert duties() == full
+
+
+def test_dimming_does_not_harm_the_south_link() -> None:
+    with Array(FIRMWARE_ELF, 2, [(0, SOUTH, 1, NORTH)], [3000.0, -3000]) as array:
+        for tile in array:
+            tile.write_eeprom(0, settings_block(tile.index + 1, 50, 0, brightness=90))
+        talk, other = Talk(array), Talk(array, 1)
+        talk.listen(1.0)
+        for value in range(10, 250, 20):
+            talk.ask(set_command("brightness", value))
+        talk.listen(1.0)
+        other.listen(0.0)
+        for said, side in ((talk.said, "S"), (other.said, "N")):
+            link = [s for s in said if isinstance(s, LinkSentence) and s.side == side][-1]
+            assert (link.lost, link.corrupt, link.overruns) == (0, 0, 0)
+            assert link.received > 30
+
+
+@pytest.mark.parametrize(
+    ("contents", "told"),
+    [
+        (b"\xff" * 12, False),
+        (settings_block(7, 100, 0), False),
+        (b"\0" * 12, True),
+        (settings_block(7, 100, 0)[:-1] + b"\0", True),
+        (b"TN\1" + bytes(9), True),
+    ],
+)
+def test_damaged_settings_are_told_and_blank_ones_are_not(contents: bytes, told: bool) -> None:
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, contents)
+        said = Talk(array).listen(0.5)
+    errors = [s for s in said if isinstance(s, ErrorSentence)]
+    assert [error.code for error in errors] == (["SETTINGS"] if told else [])
+    hello = next(s for s in said if isinstance(s, HelloSentence))
+    assert hello.tile == (7 if contents == settings_block(7, 100, 0) else 0)
