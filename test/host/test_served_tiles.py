@@ -106,6 +106,6 @@ def test_tiles_are_programmed_side_by_side_and_run_what_was_written(
         mine = [sentence for sentence in sentences if sentence["port"].endswith(f"tile-0{number}")]
         assert {sentence["tile"] for sentence in mine} == {number}
         assert mine[0]["type"] == "HELLO"
-        assert {sentence["type"] for sentence in mine} == {"HELLO", "TILE", "LINK"}
+        assert {sentence["type"] for sentence in mine} == {"HELLO", "TILE", "LINK", "TIME"}
         last = next(sentence for sentence in reversed(mine) if sentence["type"] == "TILE")
         assert last["fields"]["links"] == ["--S-", "N-S-", "N---"][number - 1]

