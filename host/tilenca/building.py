@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tilenca import paths
 from tilenca.errors import BuildError
+from tilenca.interrupts import held_back
 from tilenca.streams import warn
 
 FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
@@ -27,21 +28,25 @@ def build() -> None:
         raise BuildError("PlatformIO is not installed; run `make setup`, or name an image with --hex")
     warn("building the firmware")
     command = [pio, "run", "-e", paths.FIRMWARE_ENV]
-    # A process group of its own: what the build started ends with it.
-    with subprocess.Popen(
-        command,
-        cwd=paths.ROOT,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        process_group=0,
-    ) as building:
-        try:
-            output, _ = building.communicate()
-        except BaseException:
+    building: subprocess.Popen[bytes] | None = None
+    try:
+        with held_back():
+            # A process group of its own: what the build started ends with it.
+            building = subprocess.Popen(
+                command,
+                cwd=paths.ROOT,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                process_group=0,
+            )
+        output, _ = building.communicate()
+    except BaseException:
+        if building is not None:
             with suppress(ProcessLookupError):
                 os.killpg(building.pid, signal.SIGKILL)
-            raise
+            building.communicate()
+        raise
     if building.returncode != 0:
         warn(output.decode("utf-8", "replace").rstrip("\n"))
         raise BuildError(

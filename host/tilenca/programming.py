@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tilenca.avrdude import GONE, NO_REPLY, Avrdude, Output, Progress
+from tilenca.interrupts import held_back
 from tilenca.portlock import PortBusyError, holders, port_lock
 from tilenca.ports import denial, is_device
 
@@ -172,8 +173,9 @@ class _Fleet:
             self._done(Outcome(name, "failed", 0.0, problem))
             return
         self._attempts[name] += 1
-        run = Run(self._tool, self._image, name, descriptor)
-        self.runs[name] = run, lock
+        with held_back():
+            run = Run(self._tool, self._image, name, descriptor)
+            self.runs[name] = run, lock
         self._selector.register(run.stream, selectors.EVENT_READ, run)
         self._report(name, run.output.progress)
 

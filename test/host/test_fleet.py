@@ -4,7 +4,6 @@ import json
 import os
 import pty
 import select
-import shutil
 import signal
 import subprocess
 import sys
@@ -17,23 +16,12 @@ from lab import Lab
 from test_ihex import image
 
 from tilenca import paths
-from tilenca.building import build
 from tilenca.ihex import check_image
 from tilenca.tilesfile import read_tiles
 
 LIMIT_S = 240
 ROWS = ["####"] * 5
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(paths.ROOT / "host")}
-
-
-@pytest.fixture(scope="module")
-def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The firmware as `tilenca flash` builds it: a copy of the ELF, and of the HEX beside it."""
-    build()
-    folder = tmp_path_factory.mktemp("firmware")
-    for suffix in (".elf", ".hex"):
-        shutil.copy(paths.FIRMWARE_ELF.with_suffix(suffix), folder)
-    return folder / paths.FIRMWARE_ELF.name
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,9 @@ from pathlib import Path
 
 import pytest
 from lab import Lab
-from test_fleet import LIMIT_S, firmware
+from test_fleet import LIMIT_S
 
 from tilenca import paths
-
-__all__ = ["firmware"]
 
 STORY = (paths.ROOT / "docs" / "FLEET.md").read_text(encoding="utf-8")
 
