@@ -70,12 +70,13 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
-bench: setup-train ## print sizes of the firmware, cycles of its kernel, speed of emulation, simulation, training
+bench: setup-train ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md
 	@$(PIO) run -s -e $(ENV)
 	@$(PYTHON) tools/bench.py $(ELF)
 	@$(PYTHON) tools/bench_links.py $(ELF) --write docs/BENCHMARKS.md
 	@$(PYTHON) tools/bench_training.py
 	@$(PYTHON) tools/bench_kernel.py --write docs/BENCHMARKS.md
+	@$(PYTHON) tools/bench_fleet.py
 	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay

@@ -1,6 +1,8 @@
 """What all tests share."""
 
+import os
 import signal
+import tempfile
 
 
 def pytest_configure() -> None:
@@ -10,3 +12,5 @@ def pytest_configure() -> None:
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    # What commands keep for their user is not to mix with what this user has.
+    os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")

@@ -22,6 +22,8 @@ MARKS = 50
 # 6.3 says "can't open device", 7.1 "cannot open port".
 CANNOT_OPEN = re.compile(r"can(?:no|')t open (?:port|device)")
 
+SIGNATURE_LINE = re.compile(r"[Dd]evice signature = (0x[0-9a-fA-F]{6})")
+
 NO_REPLY = (
     "no reply from a Mega's bootloader; is this a Mega 2560? "
     "Reconnect its USB cable or press its reset, then flash it again"
@@ -120,12 +122,18 @@ class Output:
         # Of whole lines only: the reason stands at their end.
         return CANNOT_OPEN.search("\n".join(self.lines)) is not None
 
+    @property
+    def passing(self) -> bool:
+        """Whether what went wrong could go well another time."""
+        signature = SIGNATURE_LINE.search(self.text)
+        return not self.hopeless and (signature is None or signature[1].lower() == SIGNATURE)
+
     def reason(self, port: str) -> str:
         """One line for the user: what went wrong, and what to do."""
         text = self.text
         if self.hopeless:
             return _cannot_open(text, port)
-        signature = re.search(r"[Dd]evice signature = (0x[0-9a-fA-F]{6})", text)
+        signature = SIGNATURE_LINE.search(text)
         if signature and signature[1].lower() != SIGNATURE:
             return (
                 f"wrong chip: its signature is {signature[1]}, an ATmega2560's is {SIGNATURE}; "

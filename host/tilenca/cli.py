@@ -24,6 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "emulate": ("tilenca.emulate", "run the firmware image on one emulated board per tile"),
     "devices": ("tilenca.devices", "list the tiles found on USB"),
     "flash": ("tilenca.flash", "build the firmware and program all tiles side by side"),
+    "set": ("tilenca.settings_command", "set something in one, some or all tiles"),
     "monitor": ("tilenca.monitor", "watch the telemetry of all tiles"),
 }
 

@@ -1,51 +1,117 @@
-"""`tilenca devices`: the ports behind which tiles are.
+"""`tilenca devices`: the ports behind which tiles are, and which tile each is according to `tiles.toml`.
 
-Nothing is opened: opening its port resets a Mega. So which tile a board is stays unknown here (`tile` is
-null); a tile says its id in its telemetry, see `tilenca monitor`.
+Without --ask and --learn nothing is opened: opening its port may reset a Mega.
 """
 
 import argparse
 import json
+from dataclasses import replace
 from typing import Any
 
-from tilenca.arguments import add_port_argument
-from tilenca.ports import Port, find_ports
+from tilenca.asking import Answer, ask_all
+from tilenca.boards import Board, Found, add_fleet_arguments, find_boards, match_ports
+from tilenca.errors import UsageError
+from tilenca.learning import learn
+from tilenca.ports import natural_key
 from tilenca.streams import warn
 from tilenca.tables import table
+from tilenca.tilesfile import DEFAULT, Place, write_tiles
+
+HEADER = ("PORT", "TILE", "PLACE", "USB ID", "BOARD", "FIRMWARE", "WHAT")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
-    add_port_argument(parser)
+    add_fleet_arguments(parser)
+    parser.add_argument("--ask", action="store_true", help="ask each tile who it is and what it runs")
+    parser.add_argument(
+        "--learn",
+        action="store_true",
+        help="find out which tile is where, and write that to the file of tiles",
+    )
+    parser.add_argument(
+        "--blink", action="store_true", help="with --learn: you say where each blinking tile lies"
+    )
+    parser.add_argument(
+        "--assign", action="store_true", help="with --learn: give tiles without an id a free one"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
     """Prints the devices; see `tilenca devices --help`."""
-    ports = find_ports(args.port)
-    for port in ports:
-        if not port.present:
-            warn(f"{port.name}: {port.about}")
-    present = [port for port in ports if port.present]
+    for option in ("blink", "assign"):
+        if getattr(args, option) and not args.learn:
+            raise UsageError(f"--{option} does nothing without --learn; add it, or leave --{option} out")
+    # What is learnt replaces the file, whatever it says.
+    file = args.tiles or DEFAULT
+    found = Found(match_ports(args.port)) if args.learn else find_boards(args.port, args.tiles)
+    everything = sorted(found.boards + found.others, key=lambda board: natural_key(board.port.name))
+    present = [board for board in everything if board.port.present]
+    for board in everything:
+        if not board.port.present:
+            warn(f"{board.port.name}: {board.port.about}")
+    for place in found.missing:
+        warn(f"tile {place.tile} ({place.board}): not connected")
+    answers: dict[str, Answer] = {}
+    left_out = 0
+    if args.learn:
+        learnt = learn(present, args.blink, args.assign)
+        write_tiles(file, learnt.places)
+        warn(f"{file}: {len(learnt.places)} tiles")
+        answers, left_out = learnt.answers, learnt.left_out
+        places = {place.board: place for place in learnt.places}
+        present = [replace(board, place=places.get(board.name)) for board in present]
+    elif args.ask:
+        answers = ask_all([board.port.name for board in present], "tilenca devices")
+        left_out = sum(answer.hello is None for answer in answers.values())
     if args.json:
-        print(json.dumps({"devices": [as_json(port) for port in present]}, indent=2))
-        return 0
-    rows = [[port.name, _ids(port), port.serial_number or "-", port.about or "-"] for port in present]
-    print(table(["PORT", "USB ID", "SERIAL NUMBER", "WHAT"], rows))
-    return 0
+        print(json.dumps(document(present, found, answers), indent=2))
+    else:
+        print(table(HEADER, [_row(board, answers.get(board.port.name)) for board in present]))
+    return 1 if left_out else 0
 
 
-def as_json(port: Port) -> dict[str, Any]:
+def document(present: list[Board], found: Found, answers: dict[str, Answer]) -> dict[str, Any]:
+    """The whole document; boards in the order of their ports, then the tiles that are not connected."""
+    missing = [{"tile": p.tile, "row": p.row, "col": p.col, "board": p.board} for p in found.missing]
+    devices = [as_json(board, answers.get(board.port.name)) for board in present]
+    return {"devices": devices, "missing": missing}
+
+
+def as_json(board: Board, answer: Answer | None = None) -> dict[str, Any]:
     """One entry of the document: USB ids are four lower-case hex digits, as lsusb writes them, or null."""
+    port, place = board.port, board.place
+    hello = answer.hello if answer else None
     return {
         "port": port.name,
         "vid": None if port.vid is None else f"{port.vid:04x}",
         "pid": None if port.pid is None else f"{port.pid:04x}",
         "serial_number": port.serial_number,
-        "tile": None,
+        "location": port.location,
+        "board": board.name,
+        "tile": board.tile or (hello.tile if hello else None) or None,
+        "row": place.row if place else None,
+        "col": place.col if place else None,
         "about": port.about,
+        "firmware_id": f"{hello.firmware_id:08X}" if hello else None,
+        "model_id": f"{hello.model_id:04X}" if hello else None,
+        "error": answer.problem or None if answer else None,
     }
 
 
-def _ids(port: Port) -> str:
-    return "-" if port.vid is None or port.pid is None else f"{port.vid:04x}:{port.pid:04x}"
+def _row(board: Board, answer: Answer | None) -> list[str]:
+    port, hello = board.port, answer.hello if answer else None
+    ids = "-" if port.vid is None or port.pid is None else f"{port.vid:04x}:{port.pid:04x}"
+    tile = board.tile or (hello.tile if hello else None) or None
+    firmware = f"{hello.firmware_id:08X}" if hello else "-"
+    about = "; ".join(filter(None, (port.about, answer.problem if answer else ""))) or "-"
+    return [port.name, _text(tile), _where(board.place), ids, board.name, firmware, about]
+
+
+def _text(value: object) -> str:
+    return "-" if value is None else str(value)
+
+
+def _where(place: Place | None) -> str:
+    return f"{place.row},{place.col}" if place else "-"

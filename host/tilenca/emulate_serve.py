@@ -6,6 +6,7 @@ As on a real board, opening the port resets the tile: into its bootloader, if it
 import fcntl
 import os
 import select
+import termios
 import time
 import tty
 from collections.abc import Callable
@@ -20,7 +21,7 @@ from tilenca.streams import warn
 STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
 )
-STEP_S = 0.005
+STEP_S = 0.002
 # An emulation that cannot keep up gives up the time it lost, rather than stop listening to its ports.
 MAX_LAG_S = 0.1
 READ_BYTES = 4096
@@ -42,6 +43,7 @@ class ServedTile:
         self._baud = 115200
         self._poll = select.poll()
         self._poll.register(self._master, select.POLLIN)
+        self._hang_up()
         try:
             if link.is_symlink():
                 link.unlink()  # left by a run that was killed
@@ -56,8 +58,12 @@ class ServedTile:
         """Passes on what came in either direction since the last call."""
         events = dict(self._poll.poll(0)).get(self._master, 0)
         was_open, self._is_open = self._is_open, not events & select.POLLHUP
-        if self._is_open and not was_open and self._reset_on_open:
-            self._tile.reset()
+        if self._is_open and not was_open:
+            self._tile.read_serial()  # said while nobody listened
+            if self._reset_on_open:
+                self._tile.reset()
+        if was_open and not self._is_open:
+            self._hang_up()
         if events & select.POLLIN:
             with suppress(OSError):  # closed between poll and read
                 self._tile.write_serial(os.read(self._master, READ_BYTES))
@@ -65,6 +71,13 @@ class ServedTile:
         if said and self._is_open:
             with suppress(BlockingIOError):  # nobody reads: the bytes are lost, as on USB
                 os.write(self._master, said)
+
+    def _hang_up(self) -> None:
+        """DTR is down: whoever opens the port sees by HUPCL, as on a real one, that this raises it."""
+        if self._reset_on_open:
+            attributes = termios.tcgetattr(self._master)
+            attributes[2] |= termios.HUPCL
+            termios.tcsetattr(self._master, termios.TCSANOW, attributes)
 
     def close(self) -> None:
         """Removes the link and the pseudo-terminal."""
@@ -109,7 +122,7 @@ def serve(
             served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
             stack.callback(served[-1].close)
         warn(f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it")
-        _keep_step(emulation, served, seconds, on_slice)
+        keep_step(emulation, served, seconds, on_slice)
 
 
 def _lock(directory: Path) -> int:
@@ -129,9 +142,10 @@ def _lock(directory: Path) -> int:
     return descriptor
 
 
-def _keep_step(
+def keep_step(
     emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
 ) -> None:
+    """Lets emulated and real time pass together, and serves ports; see `serve`."""
     started = last = time.monotonic()
     while seconds is None or last - started < seconds:
         time.sleep(max(0.0, last + STEP_S - time.monotonic()))

@@ -1,44 +1,42 @@
-"""`tilenca flash`: one firmware image into many boards, side by side."""
+"""`tilenca flash`: one firmware image into many boards, side by side; who has it already is left in peace."""
 
 import argparse
 import json
-import os
-import shutil
-import signal
-import subprocess
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bars
-
-from tilenca import paths
-from tilenca.arguments import add_port_argument, count, positive
+from tilenca.arguments import count, positive
+from tilenca.asking import PATIENCE_S, Answer, ask_all
 from tilenca.avrdude import Progress, find_avrdude
-from tilenca.errors import BuildError
-from tilenca.ihex import check_image
-from tilenca.ports import find_ports
+from tilenca.boards import Board, add_fleet_arguments, find_fleet, tile_numbers
+from tilenca.building import FIRMWARE_HEX, build
+from tilenca.errors import NoDeviceError
+from tilenca.flashmemory import failed_boards, remember
+from tilenca.flashview import Display, display
+from tilenca.ihex import Image, check_image
 from tilenca.programming import Outcome, program_all
 from tilenca.streams import warn
 from tilenca.tables import table
-
-FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
+from tilenca.tilesfile import Place
 
 # Three of avrdude's attempts to get an answer, which are 5 s apart.
 TIMEOUT_S = 12.0
+GOOD = {"flashed", "skipped"}
+USER = "tilenca flash"
+HEADER = ("PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
-    add_port_argument(parser)
+    add_fleet_arguments(parser)
     parser.add_argument("--jobs", type=count, metavar="N", help="boards at a time (default: all)")
     parser.add_argument("--hex", type=Path, metavar="F", help="write this Intel HEX image; nothing is built")
     parser.add_argument("--no-build", action="store_true", help="write the image that is there")
+    parser.add_argument("--force", action="store_true", help="write it to tiles that already run it, too")
+    parser.add_argument("--only", metavar="TILES", help="only these tiles, such as 3,7,9-12")
+    parser.add_argument("--failed", action="store_true", help="only boards that failed when last flashed")
     parser.add_argument(
         "--timeout",
         type=positive,
@@ -49,119 +47,190 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
+@dataclass
+class Row:
+    """What became of one tile: `board` is what `tiles.toml` calls it, `firmware_id` what it says it runs."""
+
+    port: str | None
+    result: str = "interrupted"
+    seconds: float = 0.0
+    error: str | None = "interrupted; flash it again"
+    tile: int | None = None
+    board: str = ""
+    attempts: int = 0
+    firmware_id: str | None = None
+
+    def end(self, result: str, error: str | None = None) -> None:
+        """Sets what became of it."""
+        self.result, self.error = result, error
+
+    def hear(self, answer: Answer) -> None:
+        """Takes what the tile says of itself."""
+        if answer.hello:
+            self.firmware_id = f"{answer.hello.firmware_id:08X}"
+            self.tile = self.tile or answer.hello.tile or None
+
+
+@dataclass
+class _Flashing:
+    """One call: the image, the boards' rows, and whether Ctrl-C ended it."""
+
+    args: argparse.Namespace
+    image: Image
+    rows: dict[str, Row]
+    display: Display
+    interrupted: bool = False
+    answers: dict[str, Answer] = field(default_factory=dict)
+
+    def run(self) -> None:
+        """Asks, writes, asks again; an interrupt ends it between any two of them."""
+        try:
+            waiting = self._ask() if not self.args.force else list(self.rows)
+            self._write(waiting)
+            self._confirm([name for name in waiting if self.rows[name].result == "flashed"])
+        except KeyboardInterrupt:
+            self.interrupted = True
+
+    def _hear(self, names: Sequence[str], phase: str) -> dict[str, Answer]:
+        for name in names:
+            self.display.show(name, Progress(phase, 0.0))
+        patience_s = min(self.args.timeout, PATIENCE_S)
+        return ask_all(names, USER, lambda name, answer: self.rows[name].hear(answer), patience_s)
+
+    def _ask(self) -> list[str]:
+        """Who does not run this image yet."""
+        waiting = []
+        for name, answer in self._hear(list(self.rows), "asking").items():
+            if answer.firmware_id == self.image.firmware_id:
+                self._end(name, "skipped")
+            else:
+                waiting.append(name)
+        return waiting
+
+    def _write(self, names: Sequence[str]) -> None:
+        def report(name: str, news: Progress | Outcome) -> None:
+            if isinstance(news, Progress):
+                self.display.show(name, news)
+            elif news.result == "flashed":
+                self.display.show(name, Progress("confirming", 0.0))
+            else:
+                self.display.done(name, news.result, news.error)
+
+        jobs = self.args.jobs or max(len(names), 1)
+        for outcome in program_all(find_avrdude(), self.image.path, names, jobs, self.args.timeout, report):
+            row = self.rows[outcome.port]
+            row.end(outcome.result, outcome.error)
+            row.seconds, row.attempts = outcome.seconds, outcome.attempts
+            row.firmware_id = None if row.result == "flashed" else row.firmware_id
+            self.interrupted |= outcome.result == "interrupted"
+
+    def _confirm(self, names: Sequence[str]) -> None:
+        """Asks each tile what it runs now: that it was written was read back, whether it runs was not."""
+        if self.interrupted:
+            return
+        for name, answer in self._hear(names, "confirming").items():
+            self._end(name, *self._judge(answer))
+
+    def _judge(self, answer: Answer) -> tuple[str, str | None]:
+        if answer.firmware_id == self.image.firmware_id:
+            return "flashed", None
+        if answer.hello:
+            return "failed", (
+                f"it was written and read back, but the tile says it runs firmware {answer.firmware_id:08X}; "
+                "press its reset, then flash it again"
+            )
+        if self.args.hex:
+            return "flashed", None  # any program may be written; not all of them can say what they are
+        return "failed", f"it was written and read back, but the tile {answer.problem}; press its reset"
+
+    def _end(self, name: str, result: str, error: str | None = None) -> None:
+        self.rows[name].end(result, error)
+        self.display.done(name, result, error)
+
+
 def run(args: argparse.Namespace) -> int:
     """Finds the boards, builds, checks the image, programs all of them; see `tilenca flash --help`."""
-    names = [port.name for port in find_ports(args.port)]
+    found = find_fleet(args.port, args.tiles)
+    found.tell_others()
     tool = find_avrdude()
-    image = args.hex or FIRMWARE_HEX
     if not (args.hex or args.no_build):
         build()
-    size = check_image(image)
-    warn(f"writing {image} ({size} bytes) to {len(names)} board{'s' * (len(names) != 1)} with {tool.program}")
-    with _display(names) as display:
-        outcomes = program_all(tool, image, names, args.jobs or len(names), args.timeout, display.show)
-    if args.json:
-        print(json.dumps({"tiles": [asdict(outcome) for outcome in outcomes]}, indent=2))
-    else:
-        rows = [[o.port, o.result, f"{o.seconds:.1f}", o.error or ""] for o in outcomes]
-        print(table(["PORT", "RESULT", "SECONDS", "WHY"], rows))
-    results = [outcome.result for outcome in outcomes]
-    if "interrupted" in results:
-        raise KeyboardInterrupt
-    warn(f"{results.count('flashed')} of {len(results)} flashed")
-    return 0 if set(results) == {"flashed"} else 1
+    image = check_image(args.hex or FIRMWARE_HEX)
+    boards, missing = _chosen(args, found.boards, found.missing)
+    if not boards:
+        warn("nothing to do: no board of those failed when it was last flashed")
+    rows = {board.port.name: Row(board.port.name, tile=board.tile, board=board.name) for board in boards}
+    titles = {b.port.name: b.port.name + (f" tile {b.tile}" if b.tile else "") for b in boards}
+    if boards:
+        number = f"{len(boards)} board{'s' * (len(boards) != 1)}"
+        warn(f"image {image.path}: {image.size} bytes, firmware id {image.firmware_id:08X}")
+        warn(f"writing it to {number} with {tool.program}")
+    with display(titles) as shown:
+        flashing = _Flashing(args, image, rows, shown)
+        flashing.run()
+    remember({row.board: row.result in GOOD for row in rows.values()})
+    absent = [
+        Row(None, "missing", 0.0, "not connected; connect it and flash again", place.tile, place.board)
+        for place in missing
+    ]
+    return _tell([*rows.values(), *absent], args.json, flashing.interrupted)
 
 
-def build() -> None:
-    """Builds the firmware; PlatformIO itself knows what is up to date. Its output is shown only if it fails.
+def _chosen(
+    args: argparse.Namespace, boards: list[Board], missing: list[Place]
+) -> tuple[list[Board], list[Place]]:
+    """What `--only` and `--failed` leave of the fleet.
 
     Raises:
-        BuildError: PlatformIO is missing or the build failed.
+        UsageError: `--only` is no list of tiles.
+        NoDeviceError: none of those tiles is there.
     """
-    beside = Path(sys.executable).with_name("pio")
-    pio = str(beside) if beside.exists() else shutil.which("pio")
-    if pio is None:
-        raise BuildError("PlatformIO is not installed; run `make setup`, or name an image with --hex")
-    warn("building the firmware")
-    command = [pio, "run", "-e", paths.FIRMWARE_ENV]
-    # A process group of its own: what the build started ends with it.
-    with subprocess.Popen(
-        command,
-        cwd=paths.ROOT,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        process_group=0,
-    ) as building:
-        try:
-            output, _ = building.communicate()
-        except BaseException:
-            with suppress(ProcessLookupError):
-                os.killpg(building.pid, signal.SIGKILL)
-            raise
-    if building.returncode != 0:
-        warn(output.decode("utf-8", "replace").rstrip("\n"))
-        raise BuildError(
-            f"`{' '.join(command)}` failed with status {building.returncode}; its output is above"
-        )
+    if args.failed:
+        names = failed_boards()
+        boards = [board for board in boards if board.name in names]
+        missing = [place for place in missing if place.board in names]
+    if args.only is not None:
+        wanted = tile_numbers(args.only)
+        ids = {board.port.name: board.tile for board in boards}
+        unknown = [name for name, tile in ids.items() if tile is None]
+        for name, answer in ask_all(unknown, USER).items():
+            ids[name] = answer.hello.tile if answer.hello else None
+        boards = [board for board in boards if ids[board.port.name] in wanted]
+        missing = [place for place in missing if place.tile in wanted]
+        if not boards and not args.failed:
+            raise NoDeviceError(
+                f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
+                "`tilenca devices --learn` finds out which tile is which"
+            )
+    return boards, missing
 
 
-class _Lines:
-    """Progress as plain lines: one for every change of a board's phase."""
-
-    def __init__(self) -> None:
-        self._said: dict[str, str] = {}
-
-    def show(self, name: str, news: Progress | Outcome) -> None:
-        """Says what is new."""
-        text = _summary(news) if isinstance(news, Outcome) else news.phase
-        if self._said.get(name) != text:
-            self._said[name] = text
-            warn(f"{name}: {text}")
-
-
-# Where on the bar each phase starts, and how much of it the phase takes.
-SPANS = {"connecting": (0.0, 0.0), "writing": (0.0, 0.5), "verifying": (0.5, 0.5)}
-
-
-class _Bars:
-    """Progress as one bar per board."""
-
-    def __init__(self, bars: Bars, names: Sequence[str]) -> None:
-        self._bars = bars
-        self._tasks = {
-            name: bars.add_task(escape(name), total=1.0, start=False, phase="waiting") for name in names
-        }
-
-    def show(self, name: str, news: Progress | Outcome) -> None:
-        """Moves the board's bar."""
-        task = self._tasks[name]
-        if isinstance(news, Outcome):
-            completed = 1.0 if news.result == "flashed" else None
-            self._bars.update(task, phase=news.result, completed=completed)
-            self._bars.stop_task(task)
-            return
-        start, width = SPANS[news.phase]
-        if news.phase == "connecting":
-            self._bars.start_task(task)
-        self._bars.update(task, phase=news.phase, completed=start + width * news.share)
+def _tell(rows: list[Row], as_json: bool, interrupted: bool) -> int:
+    if as_json:
+        print(json.dumps({"tiles": [_document(row) for row in rows]}, indent=2))
+    elif rows:
+        lines = [
+            [
+                row.port or "-",
+                str(row.tile or "-"),
+                row.result,
+                f"{row.seconds:.1f}",
+                row.firmware_id or "-",
+                row.error or "",
+            ]
+            for row in rows
+        ]
+        print(table(HEADER, lines))
+    if interrupted:
+        raise KeyboardInterrupt
+    results = [row.result for row in rows]
+    skipped = f", {results.count('skipped')} ran it already" if "skipped" in results else ""
+    warn(f"{results.count('flashed')} of {len(results)} flashed{skipped}")
+    again = [row for row in rows if row.result not in GOOD]
+    if again:
+        warn("to try again those that failed: tilenca flash --failed, with the same ports")
+    return 0 if not again else 1
 
 
-def _summary(outcome: Outcome) -> str:
-    return outcome.result if outcome.error is None else f"{outcome.result}: {outcome.error}"
-
-
-@contextmanager
-def _display(names: Sequence[str]) -> Iterator[_Lines | _Bars]:
-    console = Console(stderr=True, highlight=False)
-    if not console.is_terminal:
-        yield _Lines()
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[phase]}"),
-    )
-    with Bars(*columns, console=console) as bars:
-        yield _Bars(bars, names)
+def _document(row: Row) -> dict[str, Any]:
+    return vars(row)

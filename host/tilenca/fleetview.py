@@ -6,12 +6,10 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
+from tilenca.fleetgrid import trouble
 from tilenca.tables import table
 from tilenca.telemetry import Event, Fleet, PortNews, TileView
 from tilenca.wording import printable, said
-
-# A tile that said nothing for so long, and for two of its periods where we know them, may be in trouble.
-QUIET_S = 3.0
 
 
 def clock_text(time_s: float) -> str:
@@ -20,11 +18,16 @@ def clock_text(time_s: float) -> str:
     return time.strftime("%H:%M:%S", time.localtime(milliseconds // 1000)) + f".{milliseconds % 1000:03d}"
 
 
+def port_words(news: PortNews) -> str:
+    """What became of a port."""
+    return "; ".join(filter(None, ("open" if news.is_open else "", news.reason)))
+
+
 def log_line(event: Event) -> str:
     """One event as one line: time, port, tile, what it says."""
     head = f"{clock_text(event.time_s)} {event.port}"
     if isinstance(event, PortNews):
-        return f"{head} - PORT {'open' if event.is_open else event.reason}"
+        return f"{head} - PORT {port_words(event)}"
     if event.sentence is None:
         return f"{head} - DAMAGED {printable(event.raw)}"
     return f"{head} {said(event.sentence)}"
@@ -51,8 +54,10 @@ def cells(view: TileView, now_s: float) -> list[str]:
     age_s = None if view.heard_s is None else max(now_s - view.heard_s, 0.0)
     state = view.tile
     counters = [view.total(counter) for counter in ("received", "corrupt", "lost")]
-    quiet = view.is_open and (age_s is None or age_s > _patience_s(view))
-    note = view.reason or (f"speaks protocol {view.other_version}: flash it" if view.other_version else "")
+    quiet = trouble(view, now_s) == "silent"
+    note = (view.reason if not view.is_open else "") or (
+        f"speaks protocol {view.other_version}: flash it" if view.other_version else ""
+    )
     note = note or ("silent" if quiet else "") or (view.error.code if view.error else "")
     return [
         view.port,
@@ -66,10 +71,6 @@ def cells(view: TileView, now_s: float) -> list[str]:
         str(view.damaged),
         note,
     ]
-
-
-def _patience_s(view: TileView) -> float:
-    return max(QUIET_S, 2 * view.hello.period_ms / 1000 if view.hello else 0.0)
 
 
 def _or_dash(value: object) -> str:

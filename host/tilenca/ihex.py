@@ -1,6 +1,7 @@
 """Intel HEX images, checked before anything is written to a board."""
 
 import binascii
+from dataclasses import dataclass
 from pathlib import Path
 
 from tilenca.errors import image_error
@@ -70,11 +71,17 @@ def firmware_id(memory: dict[int, int]) -> int:
     return binascii.crc32(bytes(memory.get(address, 0xFF) for address in range(max(memory, default=-1) + 1)))
 
 
-def check_image(path: Path) -> int:
-    """Checks that an image can be written to a tile.
+@dataclass(frozen=True)
+class Image:
+    """An image that can be written: its file, its number of bytes, and what tiles that run it call it."""
 
-    Returns:
-        The number of bytes it has.
+    path: Path
+    size: int
+    firmware_id: int
+
+
+def check_image(path: Path) -> Image:
+    """Checks that an image can be written to a tile.
 
     Raises:
         BuildError, UsageError: there is no such file, or it is not valid, too large, empty, or holds what
@@ -103,7 +110,7 @@ def check_image(path: Path) -> int:
         raise image_error(
             f"{path}: the bytes '!!!' at 0x{at:X} hang some Mega bootloaders; change what holds them"
         )
-    return len(memory)
+    return Image(path, len(memory), firmware_id(memory))
 
 
 def _find(memory: dict[int, int], wanted: bytes) -> int | None:

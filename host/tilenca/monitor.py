@@ -1,38 +1,41 @@
-"""`tilenca monitor`: the telemetry of all tiles as a live table, a log, or JSON; recorded, played back."""
+"""`tilenca monitor`: tiles in their places as a live picture, a log, or JSON; recorded, played back."""
 
 import argparse
 import fnmatch
 import json
 import time
-from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
-from rich.console import Console, Group
-from rich.live import Live
-from rich.text import Text
+from rich.console import Console
 
-from tilenca.arguments import add_port_argument, not_negative
-from tilenca.errors import NoDeviceError
-from tilenca.fleetview import live_table, log_line, summary
+from tilenca.arguments import not_negative
+from tilenca.boards import Found, add_fleet_arguments, find_boards, find_fleet, load_places
+from tilenca.errors import NoDeviceError, TilencaError
+from tilenca.fleetgrid import Grid
+from tilenca.fleetlive import LiveView
+from tilenca.fleetview import log_line, summary
 from tilenca.portreader import PortReader
-from tilenca.ports import MAGIC, Port, find_ports
-from tilenca.protocol import ErrorSentence, HelloSentence, OtherVersionSentence
+from tilenca.ports import MAGIC
 from tilenca.recording import Recorder, format_event, paced, read_recording
 from tilenca.streams import warn
-from tilenca.telemetry import Event, Fleet, Heard, PortNews, as_json
+from tilenca.telemetry import Event, Fleet, Heard, as_json
+
+# The time, and what has come by then.
+Events: TypeAlias = Iterator[tuple[float, list[Event]]]
 
 TICK_S = 0.2
-LOG_LINES = 8
+# How often to look for boards that came back under another name.
+LOOK_AROUND_S = 3.0
 # How long patterns that match nothing may do so: an emulation is up in a second or two.
 PATIENCE_S = 8.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
-    add_port_argument(parser)
+    add_fleet_arguments(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
     parser.add_argument(
         "--seconds", type=not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
@@ -49,6 +52,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="X",
         help="replay X times as fast; 0: at once (default: 1)",
     )
+    parser.add_argument(
+        "--from",
+        type=not_negative,
+        default=0.0,
+        dest="start",
+        metavar="S",
+        help="start the replay S seconds after the recording's beginning",
+    )
+    parser.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -56,9 +68,12 @@ def run(args: argparse.Namespace) -> int:
     fleet = Fleet()
     try:
         with ExitStack() as stack:
-            source = _replay(args) if args.replay else _listen(args, stack)
+            if args.replay:
+                source, grid = _replay(args), Grid(load_places(args.tiles))
+            else:
+                source, grid = _listen(args, stack)
             record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
-            display: Display = _JsonLines() if args.json else _display(fleet, stack)
+            display: Display = _JsonLines() if args.json else _display(args, fleet, grid, stack)
             _show(source, fleet, display, record, args.seconds)
     finally:
         if fleet.tiles:
@@ -74,7 +89,7 @@ class Display(Protocol):
 
 
 def _show(
-    source: Iterator[tuple[float, list[Event]]],
+    source: Events,
     fleet: Fleet,
     display: Display,
     record: Recorder | None,
@@ -92,46 +107,65 @@ def _show(
         display.show(now_s, events)
 
 
-def _listen(args: argparse.Namespace, stack: ExitStack) -> Iterator[tuple[float, list[Event]]]:
+def _listen(args: argparse.Namespace, stack: ExitStack) -> tuple[Events, Grid]:
     """Events from the ports, which are found (or not) before anything is shown."""
-    names = [port.name for port in _awaited_ports(args.port)]
-    reader = stack.enter_context(PortReader(names))
+    found = _awaited(args)
+    found.tell_others()
+    reader = stack.enter_context(PortReader([board.port.name for board in found.boards]))
+    grid = Grid(load_places(args.tiles))
+    grid.know(found)
 
-    def events() -> Iterator[tuple[float, list[Event]]]:
+    def events() -> Events:
+        look_s = time.monotonic() + LOOK_AROUND_S
         while True:
             news = reader.poll(TICK_S)
             yield time.time(), news
+            if time.monotonic() >= look_s:
+                look_s = time.monotonic() + LOOK_AROUND_S
+                _look_around(args, found, reader, grid)
 
-    return events()
+    return events(), grid
 
 
-def _awaited_ports(patterns: Sequence[str]) -> list[Port]:
-    """The ports, for which patterns get a while: tiles that were just started may still be coming."""
+def _look_around(args: argparse.Namespace, found: Found, reader: PortReader, grid: Grid) -> None:
+    """Adds what has come since: a board may come back under another name."""
+    if not (found.missing or reader.closed or any(map(MAGIC.search, args.port))):
+        return
+    try:
+        now = find_boards(args.port, args.tiles)
+    except TilencaError:
+        return  # nothing is there now, or somebody is editing the file
+    reader.add([board.port.name for board in now.boards])
+    grid.know(now)
+
+
+def _awaited(args: argparse.Namespace) -> Found:
+    """The boards, for which patterns get a while: tiles that were just started may still be coming."""
     end_s = time.monotonic() + PATIENCE_S
     told, before = False, 0
     while True:
         try:
-            found = find_ports(patterns)
-            if not told or len(found) == before:
+            found = find_fleet(args.port, args.tiles)
+            if not told or len(found.boards) == before:
                 return found
-            before = len(found)  # they come one after the other: look once more
+            before = len(found.boards)  # they come one after the other: look once more
         except NoDeviceError:
-            if not any(map(MAGIC.search, patterns)) or time.monotonic() >= end_s:
+            if not any(map(MAGIC.search, args.port)) or time.monotonic() >= end_s:
                 raise
         if not told:
-            warn(f"nothing matches {' '.join(patterns)} yet; waiting up to {PATIENCE_S:g} s for it")
+            warn(f"nothing matches {' '.join(args.port)} yet; waiting up to {PATIENCE_S:g} s for it")
             told = True
         time.sleep(TICK_S)
 
 
-def _replay(args: argparse.Namespace) -> Iterator[tuple[float, list[Event]]]:
+def _replay(args: argparse.Namespace) -> Events:
     """Events from a recording, of the ports that match."""
     chosen = (
         event
         for event in read_recording(args.replay)
         if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port)
     )
-    return paced(chosen, args.speed, TICK_S)
+    return paced(chosen, args.speed, TICK_S, args.start)
 
 
 class _JsonLines:
@@ -157,38 +191,11 @@ class _LogLines:
             print(end="", flush=True)
 
 
-class _LiveTable:
-    """The fleet's table, and below it the last remarkable lines."""
-
-    def __init__(self, fleet: Fleet, console: Console) -> None:
-        self._fleet = fleet
-        self._log: deque[str] = deque(maxlen=LOG_LINES)
-        self._now_s = 0.0
-        self._shown_s = 0.0
-        self.live = Live(console=console, auto_refresh=False, get_renderable=self._picture)
-
-    def show(self, now_s: float, events: Sequence[Event]) -> None:
-        self._now_s = now_s
-        self._log.extend(log_line(event) for event in events if _remarkable(event))
-        if time.monotonic() - self._shown_s >= TICK_S:
-            self._shown_s = time.monotonic()
-            self.live.refresh()
-
-    def _picture(self) -> Group:
-        log = Text("\n".join(self._log), no_wrap=True, overflow="ellipsis")
-        return Group(live_table(self._fleet, self._now_s), Text(), log)
-
-
-def _remarkable(event: Event) -> bool:
-    if isinstance(event, PortNews) or event.sentence is None:
-        return True
-    return isinstance(event.sentence, HelloSentence | ErrorSentence | OtherVersionSentence)
-
-
-def _display(fleet: Fleet, stack: ExitStack) -> Display:
+def _display(args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack) -> Display:
     console = Console()
     if not console.is_terminal:
         return _LogLines()
-    display = _LiveTable(fleet, console)
+    about = f"replay of {args.replay}, {args.speed:g} times as fast" if args.replay else ""
+    display = LiveView(fleet, grid, console, args.table, about)
     stack.enter_context(display.live)
     return display

@@ -31,7 +31,7 @@ class Picture:
     colours: tuple[tuple[int, int, int], ...]
 
 
-def _style(colour: tuple[int, int, int]) -> str:
+def led_style(colour: tuple[int, int, int]) -> str:
     """The LED's hue, brighter than the dim LEDs are, and paler, since pure blue is hard to read."""
     strongest = max(colour)
     if strongest == 0:
@@ -82,7 +82,7 @@ def framed(picture: Picture) -> list[Text]:
             line.append(LIGHT[(UP + DOWN) * drawn], FRAME if drawn else "")
             if (row, col) in tiles:
                 segments, colour = tiles[row, col]
-                line.append(digit(segments)[part].center(TILE_WIDTH), _style(colour))
+                line.append(digit(segments)[part].center(TILE_WIDTH), led_style(colour))
             elif col < width:
                 line.append(" " * TILE_WIDTH)
         return line
@@ -101,7 +101,7 @@ def compact(picture: Picture) -> list[Text]:
         picture.shape.cells, picture.segments, picture.colours, strict=True
     ):
         for part, text in enumerate(draw(segments) if segments else ("   ", " . ", "   ")):
-            drawn[3 * row + part][col] = Text.assemble((text, _style(colour)), " ")
+            drawn[3 * row + part][col] = Text.assemble((text, led_style(colour)), " ")
     return [Text.assemble(*line) for line in drawn]
 
 

@@ -17,13 +17,15 @@ from tilenca.protocol import HOST_BAUD
 from tilenca.telemetry import Event, Heard, LineReader, PortNews
 
 RETRY_S = 0.5
+WRITE_S = 1.0
+WAS_RESET = "opening it has reset the tile, which Linux cannot avoid the first time after it was plugged in"
 
 
 class _OpenPort:
     """A port that can be read, and what was read of its present line."""
 
-    def __init__(self, name: str) -> None:
-        """Opens it for us alone.
+    def __init__(self, name: str, user: str) -> None:
+        """Opens it for us alone; others are told that `user` has it.
 
         Raises:
             PortBusyError: another tilenca command has it.
@@ -33,36 +35,51 @@ class _OpenPort:
         self.lines = LineReader()
         self._resources = ExitStack()
         with self._resources:
-            self._resources.enter_context(port_lock(name, "tilenca monitor"))
-            device = serial.Serial(name, HOST_BAUD, timeout=0, exclusive=True)
+            self._resources.enter_context(port_lock(name, user))
+            device = serial.Serial(name, HOST_BAUD, timeout=0, write_timeout=WRITE_S, exclusive=True)
             self._resources.callback(device.close)
+            self._device = device
             self.descriptor: int = device.fileno()
-            _keep_dtr(self.descriptor)
+            self.was_reset = _keep_dtr(self.descriptor)
             self._resources = self._resources.pop_all()
+
+    def write(self, data: bytes) -> None:
+        """Writes all of it; raises OSError if the port is gone or takes nothing."""
+        self._device.write(data)
 
     def close(self) -> None:
         """Gives the port back."""
         self._resources.close()
 
 
-def _keep_dtr(descriptor: int) -> None:
-    """Leaves DTR as it is when the port is closed.
+def _keep_dtr(descriptor: int) -> bool:
+    """Leaves DTR as it is when the port is closed; returns whether opening it has raised it.
 
     A Mega resets when DTR rises, and Linux raises it at every opening, whatever the program asks for. What a
     program can do is not to lower it on leaving: then only the first opening since the cable was connected
-    resets the board.
+    resets the board. Whether DTR was left up, the flag tells that makes the system lower it.
     """
     attributes = termios.tcgetattr(descriptor)
+    lowers = bool(attributes[2] & termios.HUPCL)
     attributes[2] &= ~termios.HUPCL
     termios.tcsetattr(descriptor, termios.TCSANOW, attributes)
+    return lowers
 
 
 class PortReader:
     """Turns ports into events; use it as a context manager."""
 
-    def __init__(self, names: Sequence[str], clock: Callable[[], float] = time.time) -> None:
-        """Will read the ports at `names`; `clock` gives the events' times in seconds since 1970."""
-        self._clock = clock
+    def __init__(
+        self, names: Sequence[str], clock: Callable[[], float] = time.time, user: str = "tilenca monitor"
+    ) -> None:
+        """Will read the ports at `names`.
+
+        Args:
+            names: the ports.
+            clock: gives the events' times in seconds since 1970.
+            user: who to name to others that want a port.
+        """
+        self._clock, self._user = clock, user
         self._selector = selectors.DefaultSelector()
         self._open: dict[str, _OpenPort] = {}
         self._closed: dict[str, str | None] = dict.fromkeys(names)  # why; None: not tried yet
@@ -78,6 +95,28 @@ class PortReader:
             port.close()
         self._selector.close()
 
+    @property
+    def open(self) -> list[str]:
+        """The ports that can be read now."""
+        return list(self._open)
+
+    @property
+    def closed(self) -> list[str]:
+        """The ports that cannot be read now."""
+        return list(self._closed)
+
+    def add(self, names: Sequence[str]) -> None:
+        """Reads these ports, too."""
+        self._closed |= dict.fromkeys(name for name in names if name not in {*self._open, *self._closed})
+
+    def write(self, name: str, data: bytes) -> bool:
+        """Sends something to the tile behind an open port; False if it did not go out."""
+        try:
+            self._open[name].write(data)
+        except (KeyError, OSError):  # a port that has gone is noticed when it is read
+            return False
+        return True
+
     def poll(self, timeout_s: float) -> list[Event]:
         """Waits at most `timeout_s` for something to happen; returns it."""
         events: list[Event] = []
@@ -91,13 +130,15 @@ class PortReader:
         return events
 
     def _open_closed(self) -> list[Event]:
-        held = holders(self._closed)
+        there = [name for name in self._closed if is_device(name)]
+        held = holders(there) if there else {}
         events: list[Event] = []
         for name, before in list(self._closed.items()):
             reason = self._try_open(name, held.get(name))
             if reason is None:
                 del self._closed[name]
-                events.append(PortNews(self._clock(), name, is_open=True))
+                note = WAS_RESET if self._open[name].was_reset else ""
+                events.append(PortNews(self._clock(), name, is_open=True, reason=note))
             elif reason != before:
                 self._closed[name] = reason
                 events.append(PortNews(self._clock(), name, is_open=False, reason=reason))
@@ -112,7 +153,7 @@ class PortReader:
         if holder:
             return f"busy: {holder} has it open; waiting for it"
         try:
-            port = _OpenPort(name)
+            port = _OpenPort(name, self._user)
         except PortBusyError as busy:
             return f"busy: {busy} works on it; waiting for it"
         except (OSError, termios.error) as error:

@@ -9,7 +9,7 @@ import os
 import re
 import stat
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from serial.tools.list_ports import comports
@@ -51,7 +51,8 @@ class Port:
         name: path of the device as it was found or named.
         vid: USB vendor id; None for what is not on USB, such as a pseudo-terminal.
         pid: USB product id, likewise.
-        serial_number: of the USB adapter; None if it has none.
+        serial_number: of the USB adapter; None if it has none. Clones may share one.
+        location: where on USB it is plugged in, as the kernel names it (`1-2.3`); None if it is not on USB.
         about: what is known of it, for people.
         present: False for a port that was named but is not there.
     """
@@ -60,6 +61,7 @@ class Port:
     vid: int | None = None
     pid: int | None = None
     serial_number: str | None = None
+    location: str | None = None
     about: str = ""
     present: bool = True
 
@@ -74,9 +76,12 @@ def describe(info: ListPortInfo) -> Port:
     adapter = ADAPTERS.get((info.vid, info.pid))
     if adapter is None:
         about = info.product or info.description or ""
-        return Port(info.device, info.vid, info.pid, info.serial_number, "" if about == "n/a" else about)
-    about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
-    return Port(info.device, info.vid, info.pid, info.serial_number, about)
+        about = "" if about == "n/a" else about
+    else:
+        about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
+    # An empty serial number tells no board from another, nor does a blank one.
+    serial_number = (info.serial_number or "").strip() or None
+    return Port(info.device, info.vid, info.pid, serial_number, info.location or None, about)
 
 
 def megas(infos: Iterable[ListPortInfo]) -> list[Port]:
@@ -122,7 +127,7 @@ def _named(patterns: Sequence[str], by_device: dict[str, Port]) -> list[Port]:
             known = by_device.get(device, Port(name))
             if is_device(name):
                 about = known.about or ("pseudo-terminal" if is_pty(device) else "")
-                ports.setdefault(device, Port(name, known.vid, known.pid, known.serial_number, about))
+                ports.setdefault(device, replace(known, name=name, about=about))
             elif literal:
                 about = "not a serial port" if Path(name).exists() else "no such port"
                 ports.setdefault(device, Port(name, about=about, present=False))

@@ -11,29 +11,45 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tilenca.avrdude import GONE, NO_REPLY, Avrdude, Output, Progress
+from tilenca.interrupts import held_back
 from tilenca.portlock import PortBusyError, holders, port_lock
 from tilenca.ports import denial, is_device
 
 # How often to see whether a silent board is still there: avrdude does not notice for long.
 LOOK_AROUND_S = 0.5
 
-# A bootloader listens only for a second or two after the reset that opening the port causes; on a busy
-# machine avrdude can come too late. Opening the port again resets the board again.
+# Opening the port again resets the board again. That helps where avrdude came too late for the bootloader,
+# which listens only for a second or two; where the bootloader hangs; where a byte was damaged on the way; and
+# where the cable was loose for a moment. A wrong chip stays one.
 ATTEMPTS = 2
+PHASES = ("connecting", "writing", "verifying")
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one board: `result` is flashed, failed or interrupted; `error` None if flashed."""
+    """What became of one board.
+
+    Attributes:
+        port: its port.
+        result: `flashed`, `failed` or `interrupted`.
+        seconds: from the first attempt's start to the last one's end.
+        error: what went wrong and what to do; None if flashed.
+        attempts: how often it was tried.
+        phase: how far the last attempt came.
+        passing: whether the same could go well another time.
+    """
 
     port: str
     result: str
     seconds: float
     error: str | None = None
+    attempts: int = 0
+    phase: str = "connecting"
+    passing: bool = False
 
 
 class Run:
@@ -88,9 +104,11 @@ class Run:
         status = self._process.wait()
         self.stream.close()
         seconds = round(time.monotonic() - self.started_s, 2)
+        phase = self.output.progress.phase
         if self._failure is None and status == 0:
-            return Outcome(self.port, "flashed", seconds)
-        return Outcome(self.port, "failed", seconds, self._failure or self.output.reason(self.port))
+            return Outcome(self.port, "flashed", seconds, phase=phase)
+        reason = self._failure or self.output.reason(self.port)
+        return Outcome(self.port, "failed", seconds, reason, 0, phase, self.output.passing)
 
 
 def program_all(
@@ -140,6 +158,7 @@ class _Fleet:
         self._tool, self._image, self._timeout_s, self._report = tool, image, timeout_s, report
         self._selector = selectors.DefaultSelector()
         self._attempts: Counter[str] = Counter()
+        self._before: dict[str, Outcome] = {}
 
     def start(self, name: str) -> None:
         """Starts on a board, unless it is plain that it would fail."""
@@ -154,8 +173,9 @@ class _Fleet:
             self._done(Outcome(name, "failed", 0.0, problem))
             return
         self._attempts[name] += 1
-        run = Run(self._tool, self._image, name, descriptor)
-        self.runs[name] = run, lock
+        with held_back():
+            run = Run(self._tool, self._image, name, descriptor)
+            self.runs[name] = run, lock
         self._selector.register(run.stream, selectors.EVENT_READ, run)
         self._report(name, run.output.progress)
 
@@ -178,10 +198,14 @@ class _Fleet:
         self._selector.unregister(run.stream)
         outcome = run.finish()
         self.runs.pop(run.port)[1].close()
-        if outcome.error == NO_REPLY and self._attempts[run.port] < ATTEMPTS:
+        if before := self._before.get(run.port):
+            outcome = _both(before, outcome)
+        attempts = self._attempts[run.port]
+        if outcome.result == "failed" and outcome.passing and attempts < ATTEMPTS and is_device(run.port):
+            self._before[run.port] = outcome
             self.start(run.port)
         else:
-            self._done(outcome)
+            self._done(replace(outcome, attempts=attempts))
 
     def _done(self, outcome: Outcome) -> None:
         self.outcomes[outcome.port] = outcome
@@ -196,6 +220,13 @@ class _Fleet:
             lock.close()
         self.runs.clear()
         return stopped
+
+
+def _both(first: Outcome, second: Outcome) -> Outcome:
+    """What two attempts come to: where both failed, the one that came further says why."""
+    seconds = round(first.seconds + second.seconds, 2)
+    further = PHASES.index(first.phase) > PHASES.index(second.phase)
+    return replace(first if further and second.result == "failed" else second, seconds=seconds)
 
 
 def _obstacle(name: str) -> str | None:

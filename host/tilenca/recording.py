@@ -119,10 +119,13 @@ def paced(
     events: Iterable[Event],
     speed: float,
     tick_s: float,
+    start_s: float = 0.0,
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> Iterator[tuple[float, list[Event]]]:
     """Plays events back as they came, `speed` times as fast; 0: without any wait.
+
+    What came in the first `start_s` seconds is played at once.
 
     Yields:
         The recording's time now in seconds since 1970, and the events that are due; at least every `tick_s`.
@@ -131,7 +134,8 @@ def paced(
     first_s: float | None = None
     for event in events:
         first_s = event.time_s if first_s is None else first_s
-        while speed and (wait_s := (event.time_s - first_s) / speed - (clock() - began_s)) > DUE_S:
+        offset_s = event.time_s - first_s - start_s
+        while speed and (wait_s := offset_s / speed - (clock() - began_s)) > DUE_S:
             sleep(min(wait_s, tick_s))
-            yield first_s + (clock() - began_s) * speed, []
+            yield first_s + start_s + (clock() - began_s) * speed, []
         yield event.time_s, [event]

@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from tilenca.linkhealth import LinkHealth
 from tilenca.protocol import (
     MAX_SENTENCE,
     AckSentence,
@@ -136,6 +137,7 @@ class TileView:
         hello: what the tile said at boot, if we heard that.
         tile: its last state.
         links: the last report of each side, by letter.
+        health: how each side's link did lately, by letter.
         time: its last report of its time and memory.
         error: the last thing it said to be wrong since its HELLO.
         other_version: the protocol it speaks, if it is not ours.
@@ -152,6 +154,7 @@ class TileView:
     hello: HelloSentence | None = None
     tile: TileSentence | None = None
     links: dict[str, LinkSentence] = field(default_factory=dict)
+    health: dict[str, LinkHealth] = field(default_factory=dict)
     time: TimeSentence | None = None
     error: ErrorSentence | None = None
     other_version: int | None = None
@@ -179,12 +182,13 @@ class TileView:
         match sentence:
             case HelloSentence():
                 # The tile may have just started: what it said before is no longer so.
-                self.hello, self.tile, self.links = sentence, None, {}
+                self.hello, self.tile, self.links, self.health = sentence, None, {}, {}
                 self.time = self.error = self.other_version = None
             case TileSentence():
                 self.tile = sentence
             case LinkSentence():
                 self.links[sentence.side] = sentence
+                self.health.setdefault(sentence.side, LinkHealth()).take(sentence)
             case TimeSentence():
                 self.time = sentence
             case ErrorSentence():

@@ -29,6 +29,7 @@ class StandIn:
         signature: what it says it is.
         silent: it reads and never answers.
         mute_after: it stops answering after that many pages written.
+        recovers: what is wrong with it is no longer so when it is greeted after a page was written.
         gone_after: its port vanishes after that many pages written.
         decayed: address whose byte reads back wrong.
         flash: what was written.
@@ -38,6 +39,7 @@ class StandIn:
     signature: bytes = MEGA_2560
     silent: bool = False
     mute_after: int | None = None
+    recovers: bool = False
     gone_after: int | None = None
     decayed: int | None = None
     flash: bytearray = field(default_factory=lambda: bytearray(b"\xff" * 0x40000))
@@ -108,6 +110,8 @@ class StandIn:
         command = body[0]
         head = bytes([command, OK])
         if command == SIGN_ON:
+            if self.recovers and self.pages:
+                self.mute_after = self.decayed = None
             return head + b"\x08AVRISP_2"
         if command == GET_PARAMETER:
             return head + b"\x02"

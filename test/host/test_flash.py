@@ -24,6 +24,8 @@ from tilenca.portlock import port_lock
 
 DATA = bytes(index * 7 & 0xFF for index in range(6000))
 LIMIT_S = 60
+# The stand-ins cannot say what they run: nobody waits for that long.
+QUICK = ("--force", "--timeout", "2")
 
 
 @pytest.fixture
@@ -35,11 +37,22 @@ def firmware(tmp_path: Path) -> Path:
 
 def command(firmware: Path, *names: str, options: tuple[str, ...] = ()) -> list[str]:
     named = [argument for name in names for argument in ("--port", name)]
-    return [sys.executable, "-m", "tilenca.cli", "flash", "--hex", str(firmware), "--json", *options, *named]
+    return [
+        sys.executable,
+        "-m",
+        "tilenca.cli",
+        "flash",
+        "--hex",
+        str(firmware),
+        "--json",
+        *QUICK,
+        *options,
+        *named,
+    ]
 
 
 def flash(
-    firmware: Path, *names: str, options: tuple[str, ...] = ("--timeout", "2")
+    firmware: Path, *names: str, options: tuple[str, ...] = ()
 ) -> tuple[int, dict[str, dict[str, Any]], str]:
     """(exit status, the document's tiles by port, stderr) of `tilenca flash --json`."""
     done = subprocess.run(
@@ -71,12 +84,37 @@ def test_boards_are_programmed_side_by_side_and_one_bad_board_stops_no_other(fir
         assert tiles[board.port]["result"] == "flashed"
         assert tiles[board.port]["error"] is None
         assert board.flash[: len(DATA)] == DATA
-        assert f"{board.port}: flashed" in chatter
+        assert f"{board.port}: flashed (" in chatter
     for reason, board in bad.items():
         assert tiles[board.port]["result"] == "failed"
         assert tiles[board.port]["error"].startswith(reason)
     assert tiles["/dev/no-such-port"]["error"] == "no such port; is the board connected?"
     assert "3 of 9 flashed" in chatter
+
+
+def test_what_may_pass_is_tried_once_more_and_what_cannot_is_not(firmware: Path) -> None:
+    with (
+        StandIn(mute_after=5, recovers=True) as hung,
+        StandIn(decayed=0x123, recovers=True) as disturbed,
+        StandIn(signature=ATMEGA_328P) as wrong,
+    ):
+        status, tiles, chatter = flash(firmware, hung.port, disturbed.port, wrong.port)
+    assert status == 1, chatter
+    assert [(tiles[board.port]["result"], tiles[board.port]["attempts"]) for board in (hung, disturbed)] == [
+        ("flashed", 2)
+    ] * 2
+    assert (tiles[wrong.port]["result"], tiles[wrong.port]["attempts"]) == ("failed", 1)
+
+
+def test_the_next_call_with_failed_flashes_those_and_no_other(firmware: Path) -> None:
+    with StandIn() as good, StandIn(decayed=0x123) as bad:
+        assert flash(firmware, good.port, bad.port)[0] == 1
+        bad.decayed = None
+        status, tiles, _ = flash(firmware, good.port, bad.port, options=("--failed",))
+        assert (status, list(tiles)) == (0, [bad.port])
+        status, tiles, chatter = flash(firmware, good.port, bad.port, options=("--failed",))
+    assert (status, tiles) == (0, {})
+    assert "nothing to do" in chatter
 
 
 def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> None:
@@ -87,7 +125,10 @@ def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> No
         assert all(board.flash[: len(DATA)] == DATA for board in boards)
     # One at a time: a board is connected to only after the one before is done.
     phases = [line.split(": ", 1)[1] for line in chatter.splitlines() if line.startswith("/dev/pts/")]
-    assert [phase for phase in phases if phase in ("connecting", "flashed")] == ["connecting", "flashed"] * 3
+    assert [phase for phase in phases if phase in ("connecting", "confirming")] == [
+        "connecting",
+        "confirming",
+    ] * 3
     assert {tile["result"] for tile in tiles.values()} == {"flashed"}
 
 
@@ -104,8 +145,8 @@ def test_without_json_stdout_is_a_table(firmware: Path) -> None:
         arguments = [argument for argument in command(firmware, board.port) if argument != "--json"]
         done = subprocess.run(arguments, capture_output=True, text=True, timeout=LIMIT_S, check=False)
     header, row = done.stdout.splitlines()
-    assert header.split() == ["PORT", "RESULT", "SECONDS", "WHY"]
-    assert row.split()[:2] == [board.port, "flashed"]
+    assert header.split() == ["PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY"]
+    assert row.split()[:3] == [board.port, "-", "flashed"]
 
 
 def test_a_board_without_permission_says_what_to_do(firmware: Path) -> None:

@@ -83,7 +83,7 @@ def test_three_marks_across_two_records_are_found(tmp_path: Path) -> None:
 def test_an_image_up_to_the_bootloader_is_accepted(tmp_path: Path) -> None:
     path = tmp_path / "firmware.hex"
     path.write_text(image(b"!!" + b"x" * 14, APPLICATION_BYTES - 16))
-    assert check_image(path) == 16
+    assert check_image(path).size == 16
 
 
 def test_a_missing_image_is_a_usage_error_if_given_and_a_build_error_if_ours(tmp_path: Path) -> None:

@@ -188,8 +188,9 @@ def test_what_is_recorded_is_replayed_through_the_same_view(
     assert (json.loads(only)["tile"], json.loads(only)["fields"]["label"]) == (2, "7")
 
 
-def test_on_a_terminal_it_is_a_live_table_without_colour_if_so_asked(
-    tiles: list[Tile], tmp_path: Path
+@pytest.mark.parametrize("options", [["--table"], []])
+def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
+    options: list[str], tiles: list[Tile], tmp_path: Path
 ) -> None:
     record = tmp_path / "record.jsonl"
     with Monitor("--record", str(record), *ports(*tiles)) as monitor:
@@ -201,18 +202,24 @@ def test_on_a_terminal_it_is_a_live_table_without_colour_if_so_asked(
     screen, inside = pty.openpty()
     termios.tcsetwinsize(inside, (40, 150))
     environment = {**os.environ, "TERM": "xterm-256color", "NO_COLOR": "1"}
-    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--replay", str(record), "--speed", "0"]
+    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--replay", str(record)]
+    command += ["--speed", "0", *options]
     done = subprocess.run(
         command, stdout=inside, stderr=subprocess.PIPE, env=environment, timeout=LIMIT_S, check=False
     )
     os.close(inside)
     picture = read_all(screen)
     assert done.returncode == 0, done.stderr
+    assert "\x1b[3" not in picture, "a colour"
+    assert "3 tiles  3 show 7" in picture
+    if not options:
+        assert "┌─1──" in picture
+        assert "╺━┓" in picture
+        return
     assert "RECEIVED" in picture
     for tile in tiles:
         row = next(line for line in reversed(picture.splitlines()) if line.startswith(tile.port))
         assert row.split()[:6] == [tile.port, str(tile.tile), "7", "1", "0", "s"]
-    assert "\x1b[3" not in picture, "a colour"
 
 
 def read_all(descriptor: int) -> str:

@@ -75,7 +75,7 @@ def test_events_are_played_at_their_pace(speed: float) -> None:
     recorded = [PortNews(1000.0 + offset, "p", is_open=True) for offset in (0.0, 0.5, 0.5, 3.0)]
     played = []
     last_tick_s = clock()
-    for _, due in paced(recorded, speed, 0.2, clock, clock.sleep):
+    for _, due in paced(recorded, speed, 0.2, 0.0, clock, clock.sleep):
         assert clock() - last_tick_s <= 0.2 + 1e-9, "the display is fed at least every tick"
         last_tick_s = clock()
         played += [(clock() - 100.0, event) for event in due]
@@ -85,8 +85,19 @@ def test_events_are_played_at_their_pace(speed: float) -> None:
     )
 
 
+def test_a_replay_from_later_on_plays_what_was_before_at_once() -> None:
+    clock = Clock()
+    recorded = [PortNews(1000.0 + offset, "p", is_open=True) for offset in (0.0, 50.0, 61.0)]
+    times = [
+        (round(clock() - 100.0, 2), event.time_s)
+        for _, due in paced(recorded, 2.0, 0.2, 60.0, clock, clock.sleep)
+        for event in due
+    ]
+    assert times == [(0.0, 1000.0), (0.0, 1050.0), (0.5, 1061.0)]
+
+
 def test_speed_0_never_waits() -> None:
     clock = Clock()
     recorded = [PortNews(time_s, "p", is_open=True) for time_s in (0.0, 1e6)]
-    assert len(list(paced(recorded, 0.0, 0.2, clock, clock.sleep))) == 2
+    assert len(list(paced(recorded, 0.0, 0.2, 0.0, clock, clock.sleep))) == 2
     assert clock() == 100.0

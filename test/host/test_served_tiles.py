@@ -3,7 +3,6 @@
 import json
 import os
 import select
-import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +14,6 @@ import pytest
 from test_ihex import image
 
 from tilenca import paths
-from tilenca.flash import build
 
 LIMIT_S = 120
 
@@ -26,16 +24,6 @@ IDLE = image(b"\xff\xcf")
 def tilenca(*arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "tilenca.cli", *arguments]
     return subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)
-
-
-@pytest.fixture(scope="module")
-def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The firmware as `tilenca flash` builds it: a copy of the ELF, and of the HEX beside it."""
-    build()
-    folder = tmp_path_factory.mktemp("firmware")
-    for suffix in (".elf", ".hex"):
-        shutil.copy(paths.FIRMWARE_ELF.with_suffix(suffix), folder)
-    return folder / paths.FIRMWARE_ELF.name
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,178 @@
+"""Boards behind ports: told apart by what stays when they are plugged in again; known from `tiles.toml`."""
+
+import argparse
+import os
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from serial.tools.list_ports import comports
+
+from tilenca.arguments import add_port_argument
+from tilenca.errors import NoDeviceError, UsageError
+from tilenca.ports import Port, describe, find_ports, is_device, natural_key
+from tilenca.streams import warn
+from tilenca.tilesfile import DEFAULT, Place, read_tiles
+
+
+@dataclass(frozen=True)
+class Board:
+    """A port, the name of the board behind it (as in `tiles.toml`), and its place if the file has one."""
+
+    port: Port
+    name: str
+    place: Place | None = None
+
+    @property
+    def tile(self) -> int | None:
+        """Which tile it is according to `tiles.toml`."""
+        return self.place.tile if self.place else None
+
+
+@dataclass(frozen=True)
+class Found:
+    """The fleet.
+
+    Attributes:
+        boards: those that are there, in the order of their ports.
+        missing: what `tiles.toml` lists besides.
+        others: boards on USB that it does not list.
+    """
+
+    boards: list[Board]
+    missing: list[Place] = field(default_factory=list)
+    others: list[Board] = field(default_factory=list)
+
+    def tell_others(self) -> None:
+        """Says which boards are left alone."""
+        if self.others:
+            names = ", ".join(board.port.name for board in self.others)
+            warn(f"left alone, since the file of tiles does not list them: {names}; name them with --port")
+
+
+def board_name(port: Port, shared: Iterable[str]) -> str:
+    """What tells the board from all others; `shared` are the serial numbers that several boards have."""
+    if port.serial_number and port.serial_number not in set(shared):
+        return f"serial:{port.serial_number}"
+    if port.location:
+        return f"location:{port.location}"
+    return f"port:{Path(port.name).absolute()}"
+
+
+def shared_serials(ports: Iterable[Port]) -> set[str]:
+    """Serial numbers that more than one of the ports has."""
+    counted = Counter(port.serial_number for port in ports if port.serial_number)
+    return {number for number, times in counted.items() if times > 1}
+
+
+def is_board(port: Port, name: str) -> bool:
+    """Whether a board's name is one of this port's."""
+    kind, _, value = name.partition(":")
+    if kind == "port":
+        return os.path.realpath(value) == os.path.realpath(port.name)
+    return value == {"serial": port.serial_number, "location": port.location}[kind]
+
+
+def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]) -> list[Board]:
+    """The boards behind the ports.
+
+    Args:
+        ports: those in use.
+        places: what `tiles.toml` says.
+        on_usb: every port on USB, in use or not, so that a board's name does not depend on that.
+    """
+    shared = shared_serials(on_usb)
+    boards = []
+    for port in ports:
+        mine = [place for place in places if is_board(port, place.board)]
+        # A serial number that two boards have by now says nothing.
+        mine = [p for p in mine if p.board.partition(":")[0] != "serial" or port.serial_number not in shared]
+        boards.append(Board(port, board_name(port, shared), mine[0] if mine else None))
+    return boards
+
+
+def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
+    """`--port` and `--tiles`, which all fleet commands share."""
+    add_port_argument(parser)
+    parser.add_argument(
+        "--tiles",
+        type=Path,
+        metavar="F",
+        help=f"which board is which tile (default: {DEFAULT}, if there is one)",
+    )
+
+
+def load_places(path: Path | None) -> list[Place]:
+    """The tiles of the file that `--tiles` names, else of the one in this folder, else none."""
+    if path is None and not DEFAULT.exists():
+        return []
+    return read_tiles(path or DEFAULT)
+
+
+def match_ports(patterns: Sequence[str]) -> list[Board]:
+    """The boards behind the ports that `--port` names, else all on USB; NoDeviceError if none is there."""
+    return match(find_ports(patterns), [], [describe(info) for info in comports()])
+
+
+def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
+    """The fleet: what `--port` names, else what `tiles.toml` lists, else the Mega 2560s on USB.
+
+    Args:
+        patterns: of `--port`.
+        path: of `--tiles`.
+
+    Raises:
+        NoDeviceError: nothing of it is there.
+        UsageError: the file is wrong.
+    """
+    places = load_places(path)
+    on_usb = [describe(info) for info in comports()]
+    if patterns or not places:
+        return Found(match(find_ports(patterns), places, on_usb))
+    names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]
+    listed = [Port(name) for name in names if is_device(name)]
+    try:
+        listed += find_ports()
+    except NoDeviceError:
+        if not listed:
+            raise
+    # What the file lists by its USB socket may be a board whose ids are not known here.
+    known = {port.name for port in listed}
+    listed += [p for p in on_usb if p.name not in known and any(is_board(p, place.board) for place in places)]
+    boards = match(sorted(listed, key=lambda port: natural_key(port.name)), places, on_usb)
+    known_places = {board.place for board in boards}
+    missing = [place for place in places if place not in known_places]
+    others = [board for board in boards if board.place is None]
+    return Found([board for board in boards if board.place is not None], missing, others)
+
+
+def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
+    """As `find_boards`, but at least one board of the fleet is there.
+
+    Raises:
+        NoDeviceError: none is.
+        UsageError: the file is wrong.
+    """
+    found = find_boards(patterns, path)
+    if not found.boards:
+        raise NoDeviceError(
+            f"none of the {len(found.missing)} tiles that {path or DEFAULT} lists is connected; "
+            "`tilenca devices` lists what is on USB"
+        )
+    return found
+
+
+def tile_numbers(text: str) -> set[int]:
+    """The tile ids of a list like `3,7,9-12`.
+
+    Raises:
+        UsageError: it is no such list.
+    """
+    numbers: set[int] = set()
+    for part in text.split(","):
+        first, _, last = part.strip().partition("-")
+        if not (first.isdecimal() and (last.isdecimal() or "-" not in part)) or int(last or first) > 255:
+            raise UsageError(f"'{text}' is not a list of tiles such as 3,7,9-12")
+        numbers.update(range(int(first), int(last or first) + 1))
+    return numbers

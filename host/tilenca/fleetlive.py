@@ -1,0 +1,100 @@
+"""The monitor's live picture: a line about all tiles, the tiles in their places, the log of what happens."""
+
+import time
+from collections import Counter, deque
+from collections.abc import Sequence
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.live import Live
+from rich.segment import Segment
+from rich.text import Text
+
+from tilenca.fleetgrid import Cell, Grid, Position
+from tilenca.fleetnews import News, Reporter
+from tilenca.fleetpicture import full, small
+from tilenca.fleetview import clock_text, live_table
+from tilenca.telemetry import Event, Fleet
+
+REDRAW_S = 0.25
+LOG_LINES = 200
+LEAST_LOG = 4
+RATE_S = 2.0
+
+
+class LiveView:
+    """Shows the fleet on a terminal; enter `live` while it does."""
+
+    def __init__(self, fleet: Fleet, grid: Grid, console: Console, table: bool, about: str = "") -> None:
+        """Will draw the grid, or with `table` one line per port; `about` says what is replayed."""
+        self._fleet, self._grid, self._table, self._about = fleet, grid, table, about
+        self._console = console
+        self._reporter = Reporter(fleet)
+        self._log: deque[News] = deque(maxlen=LOG_LINES)
+        self._counted: deque[tuple[float, int]] = deque(maxlen=2 + round(RATE_S / REDRAW_S))
+        self._now_s = self._shown_s = 0.0
+        self.live = Live(console=console, auto_refresh=False, get_renderable=lambda: _Screen(self))
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        """Takes what is new; draws now and then, and at once after a pause."""
+        self._now_s = now_s
+        for event in events:
+            self._log.extend(self._reporter.take(event))
+        if time.monotonic() - self._shown_s >= REDRAW_S:
+            self._shown_s = time.monotonic()
+            self.live.refresh()
+
+    def lines(self, width: int, height: int) -> list[Text]:
+        """The whole picture, no wider and no higher than that."""
+        grid = self._grid.cells(self._fleet, self._now_s)
+        body = self._body(grid, width, height - 1 - LEAST_LOG)
+        room = max(height - len(body) - 2, 0)
+        log = [self._log_line(news) for news in list(self._log)[-room:]] if room else []
+        lines = [self._head(grid), *body, *log]
+        for line in lines:
+            line.truncate(width, overflow="ellipsis")
+        return lines[:height]
+
+    def _body(self, grid: dict[Position, Cell], width: int, height: int) -> list[Text]:
+        if not self._table:
+            for lines in (full(grid, self._console.options.ascii_only), small(grid)):
+                if len(lines) <= height and max((line.cell_len for line in lines), default=0) <= width:
+                    return lines
+        options = self._console.options.update(width=width, height=None)
+        rendered = self._console.render_lines(live_table(self._fleet, self._now_s), options, pad=False)
+        return [Text.assemble(*((part.text, part.style or "") for part in line)) for line in rendered][
+            :height
+        ]
+
+    def _head(self, grid: dict[Position, Cell]) -> Text:
+        cells = grid.values()
+        shown = Counter(cell.label for cell in cells if cell.label is not None and not cell.trouble)
+        views = self._fleet.tiles.values()
+        self._counted.append((time.monotonic(), sum(view.sentences for view in views)))
+        (first_s, first), (last_s, last) = self._counted[0], self._counted[-1]
+        parts = [
+            f"{len(cells)} tiles",
+            ", ".join(f"{count} show {label or 'nothing'}" for label, count in shown.most_common()),
+            *(f"{count} {what}" for what, count in Counter(c.trouble for c in cells if c.trouble).items()),
+            f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
+            f"{sum(view.damaged for view in views)} damaged",
+            self._about or clock_text(self._now_s)[:-4],
+        ]
+        return Text("  ".join(filter(None, parts)), style="bold")
+
+    def _log_line(self, news: News) -> Text:
+        tile = "-" if news.tile is None else str(news.tile)
+        style = "yellow" if news.bad else ""
+        return Text(f"{clock_text(news.time_s)} tile {tile:>3} {news.port} {news.text}", style)
+
+
+class _Screen:
+    """What Live draws: as much as fits the terminal as it is now."""
+
+    def __init__(self, view: LiveView) -> None:
+        self._view = view
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        width, height = console.size
+        for line in self._view.lines(width, height - 1):
+            yield from line.render(console)
+            yield Segment.line()

@@ -1,0 +1,94 @@
+"""The log of what happens in a fleet: what changed, when, and with which tile. Pure: events in, news out."""
+
+from dataclasses import dataclass
+
+from tilenca.fleetview import port_words
+from tilenca.linkhealth import FAILING, WELL
+from tilenca.protocol import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    TileSentence,
+)
+from tilenca.telemetry import Event, Fleet, PortNews, TileView
+from tilenca.wording import printable, words
+
+
+@dataclass(frozen=True)
+class News:
+    """One line of the log; `tile` is None while it is not known, `bad` what a person should look at."""
+
+    time_s: float
+    port: str
+    tile: int | None
+    text: str
+    bad: bool = False
+
+
+class Reporter:
+    """Watches a fleet and tells what is new with each event."""
+
+    def __init__(self, fleet: Fleet) -> None:
+        self._fleet = fleet
+        self._label: dict[str, str] = {}
+        self._links: dict[str, str] = {}
+        self._failing: set[tuple[str, str]] = set()
+
+    def take(self, event: Event) -> list[News]:
+        """The news of an event that the fleet has just taken."""
+        view = self._fleet.tiles[event.port]
+        return [
+            News(event.time_s, event.port, view.tile_id, text, bad) for text, bad in self._tell(event, view)
+        ]
+
+    def _tell(self, event: Event, view: TileView) -> list[tuple[str, bool]]:
+        if isinstance(event, PortNews):
+            return [(f"port {port_words(event)}", not event.is_open)]
+        match event.sentence:
+            case None:
+                return [(f"damaged: {printable(event.raw)}", True)]
+            case HelloSentence() as hello:
+                self._label[event.port], self._links[event.port] = "", "----"
+                self._failing -= {(event.port, side) for side in "NESW"}
+                return [(f"started: {words(hello)}", False)]
+            case TileSentence() as tile:
+                return [*self._label_news(event.port, tile), *self._link_news(event.port, tile)]
+            case LinkSentence() as link:
+                return self._health_news(event.port, link, view)
+            case ErrorSentence() | NakSentence() | OtherVersionSentence() as complaint:
+                return [(words(complaint), True)]
+            case AckSentence() as done:
+                return [(words(done), False)]
+        return []
+
+    def _label_news(self, port: str, tile: TileSentence) -> list[tuple[str, bool]]:
+        before, self._label[port] = self._label.get(port), tile.label
+        if before == tile.label:
+            return []
+        what = tile.label or "nothing"
+        return [(f"shows {what}, before {before}" if before else f"shows {what}", False)]
+
+    def _link_news(self, port: str, tile: TileSentence) -> list[tuple[str, bool]]:
+        before, self._links[port] = self._links.get(port), tile.links
+        if before is None or before == tile.links:
+            return []
+        gone = "".join(old for old, new in zip(before, tile.links, strict=True) if new == "-" != old)
+        come = "".join(new for old, new in zip(before, tile.links, strict=True) if old == "-" != new)
+        lost = [(f"lost its neighbour on {' '.join(gone)}", True)] if gone else []
+        return [*lost, *([(f"hears a neighbour on {' '.join(come)}", False)] if come else [])]
+
+    def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
+        health, key = view.health.get(link.side), (port, link.side)
+        good = health.good if health else None
+        if good is None:
+            return []
+        if good < FAILING and key not in self._failing:
+            self._failing.add(key)
+            return [(f"link {link.side} is failing: {1 - good:.0%} of the frames get lost", True)]
+        if good >= WELL and key in self._failing:
+            self._failing.discard(key)
+            return [(f"link {link.side} is well again", False)]
+        return []

@@ -1,0 +1,153 @@
+"""`tilenca devices --learn`: finds out which tile is behind which port and where it lies."""
+
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tilenca.asking import Answer, ask
+from tilenca.boards import Board
+from tilenca.commanding import command_all
+from tilenca.errors import TilencaError
+from tilenca.fleetgrid import neighbours
+from tilenca.fleetmap import arrange
+from tilenca.portreader import PortReader
+from tilenca.protocol import MAX_BLINK_S, blink_command, set_command
+from tilenca.streams import warn
+from tilenca.telemetry import Fleet
+from tilenca.tilesfile import MAX_TILE_ID, Place
+
+USER = "tilenca devices --learn"
+# Every tile tells of its four sides, one after another: within some of its periods.
+LISTEN_S = 12.0
+TICK_S = 0.1
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """What was found: the places, what each port's tile answered, and how many tiles have no place."""
+
+    places: list[Place]
+    answers: dict[str, Answer]
+    left_out: int
+
+
+def learn(boards: Sequence[Board], blink: bool, assign: bool) -> Learnt:
+    """Asks the tiles who they are and who is on which side; where that is not enough, the person.
+
+    Args:
+        boards: the boards.
+        blink: let each tile blink and ask the person for its place, whatever tiles say.
+        assign: give tiles without an id of their own a free one.
+
+    Raises:
+        TilencaError: tiles have no id of their own, or places cannot be found out.
+    """
+    names = [board.port.name for board in boards]
+    fleet = Fleet()
+    with PortReader(names, user=USER) as reader:
+        answers = ask(reader, names, hear=fleet.take)
+        for name, answer in answers.items():
+            if answer.hello is None:
+                warn(f"{name}: {answer.problem}; left out")
+        tiles = _ids(reader, {n: a.hello.tile for n, a in answers.items() if a.hello}, assign)
+        if not tiles:
+            raise TilencaError("no tile answers; flash them first: tilenca flash")
+        _listen(reader, fleet, set(tiles))
+        cells = _cells(reader, tiles, fleet, blink)
+    by_port = {board.port.name: board.name for board in boards}
+    places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
+    return Learnt(places, answers, len(boards) - len(places))
+
+
+def _ids(reader: PortReader, said: dict[str, int], assign: bool) -> dict[str, int]:
+    """Each port's tile id; those that have none of their own get one, if they may."""
+    tiles: dict[str, int] = {}
+    lacking = []
+    for name, tile in said.items():
+        if tile == 0 or tile in tiles.values():
+            lacking.append(name)
+        else:
+            tiles[name] = tile
+    if not lacking:
+        return tiles
+    if not assign:
+        raise TilencaError(
+            f"no id of their own have the tiles behind {', '.join(lacking)}; add --assign to give them free "
+            "ones, or set them with `tilenca set id N --port PORT`"
+        )
+    free = (tile for tile in range(1, MAX_TILE_ID + 1) if tile not in tiles.values())
+    fresh = dict(zip(lacking, free, strict=False))
+    orders = {name: set_command("id", tile) for name, tile in fresh.items()}
+    for name, reply in command_all(reader, orders, "SET").items():
+        if reply.problem:
+            warn(f"{name}: {reply.problem}; left out")
+        else:
+            tiles[name] = fresh[name]
+            warn(f"{name}: its tile is {fresh[name]} now")
+    return {name: tiles[name] for name in said if name in tiles}
+
+
+def _listen(reader: PortReader, fleet: Fleet, names: set[str]) -> None:
+    """Hears every tile tell of all its sides, as it is now: what was said under an old id is forgotten."""
+    for view in fleet.tiles.values():
+        view.links.clear()
+    end_s = time.monotonic() + LISTEN_S
+    while time.monotonic() < end_s:
+        for event in reader.poll(TICK_S):
+            fleet.take(event)
+        if all(len(fleet.tiles[name].links) == 4 for name in names):
+            return
+
+
+def _cells(
+    reader: PortReader, tiles: Mapping[str, int], fleet: Fleet, blink: bool
+) -> dict[int, tuple[int, int]]:
+    if blink:
+        return _asked(reader, tiles)
+    alone: dict[int, dict[str, tuple[int, str]]] = {tile: {} for tile in tiles.values()}
+    found = arrange(alone | neighbours(fleet))
+    if found.conflicts:
+        raise TilencaError(
+            f"what tiles say of their neighbours does not fit together: {found.conflicts[0]}; "
+            "check the plugs, or add --blink to say yourself where each lies"
+        )
+    cells = {tile: cell for tile, cell in found.cells.items() if tile in tiles.values()}
+    if len(found.groups) > 1:
+        groups = "; ".join(" ".join(map(str, group)) for group in found.groups)
+        warn(
+            f"{len(found.groups)} groups of tiles do not touch ({groups}): how they lie to each other is a "
+            "guess; edit the file, or add --blink to say where each lies"
+        )
+    return cells
+
+
+def _asked(reader: PortReader, tiles: Mapping[str, int]) -> dict[int, tuple[int, int]]:
+    """Lets one tile after another blink, and takes its place from standard input."""
+    cells: dict[int, tuple[int, int]] = {}
+    for name, tile in tiles.items():
+        reply = command_all(reader, {name: blink_command(MAX_BLINK_S)}, "BLINK")[name]
+        if reply.problem:
+            warn(f"{name}: {reply.problem}; left out")
+            continue
+        place = _typed(tile, name, cells)
+        command_all(reader, {name: blink_command(0)}, "BLINK")
+        if place:
+            cells[tile] = place
+    return cells
+
+
+def _typed(tile: int, name: str, cells: Mapping[int, tuple[int, int]]) -> tuple[int, int] | None:
+    while True:
+        warn(f"tile {tile} ({name}) blinks. Its row and column, such as 0 3 (nothing: leave it out)?")
+        line = sys.stdin.readline()
+        words = line.replace(",", " ").split()
+        if not words:
+            return None
+        if len(words) == 2 and all(word.removeprefix("-").isdecimal() for word in words):
+            place = int(words[0]), int(words[1])
+            if place not in cells.values():
+                return place
+            warn("another tile lies there")
+        else:
+            warn("two numbers, please")

@@ -1,0 +1,122 @@
+"""`tilenca set`: one setting in one, some or all tiles, acknowledged and read back."""
+
+import argparse
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from tilenca.asking import ask
+from tilenca.boards import add_fleet_arguments, find_fleet, tile_numbers
+from tilenca.commanding import command_all
+from tilenca.errors import NoDeviceError, UsageError
+from tilenca.portreader import PortReader
+from tilenca.protocol import PRESETS, SETTING_RANGES, HelloSentence, set_command
+from tilenca.streams import warn
+from tilenca.tables import table
+
+USER = "tilenca set"
+HEADER = ("PORT", "TILE", "RESULT", "ID", "PERIOD", "UPDATES", "BRIGHTNESS", "WHY")
+# What of a HELLO each setting is.
+FIELDS = {"id": "tile", "period": "period_ms", "updates": "updates", "brightness": "brightness"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the command's options."""
+    ranges = "; ".join(f"{name} {low} to {high}" for name, (low, high) in SETTING_RANGES.items())
+    parser.add_argument("name", metavar="NAME", help=f"{', '.join(SETTING_RANGES)} or preset")
+    parser.add_argument("value", metavar="VALUE", help=f"{ranges}; preset {' or '.join(PRESETS)}")
+    add_fleet_arguments(parser)
+    parser.add_argument(
+        "--tile", action="append", metavar="N", help="only this tile, or a list like 3,7,9-12; repeatable"
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
+
+
+@dataclass
+class Row:
+    """What became of one tile; `hello` is what it said last of itself."""
+
+    port: str
+    tile: int | None
+    result: str = "failed"
+    error: str | None = None
+    hello: HelloSentence | None = None
+
+
+def run(args: argparse.Namespace) -> int:
+    """Sets it everywhere at once; see `tilenca set --help`."""
+    try:
+        value = args.value if args.name == "preset" or not args.value.isdecimal() else int(args.value)
+        order = set_command(args.name, value)
+    except ValueError as error:
+        raise UsageError(f"{error}; see tilenca set --help") from error
+    wanted = set[int]().union(*map(tile_numbers, args.tile)) if args.tile else None
+    found = find_fleet(args.port, args.tiles)
+    found.tell_others()
+    rows = {board.port.name: Row(board.port.name, board.tile) for board in found.boards}
+    with PortReader(list(rows), user=USER) as reader:
+        rows = _known(reader, rows, wanted)
+        if args.name == "id" and len(rows) > 1 and value != 0:
+            raise UsageError(f"{len(rows)} tiles would have the same id; choose one with --tile or --port")
+        _set(reader, rows, args.name, value, order)
+    absent = [p for p in found.missing if wanted is None or p.tile in wanted]
+    for place in absent:
+        warn(f"tile {place.tile} ({place.board}): not connected")
+    _print(list(rows.values()), args.json)
+    return 0 if not absent and all(row.result == "set" for row in rows.values()) else 1
+
+
+def _known(reader: PortReader, rows: dict[str, Row], wanted: set[int] | None) -> dict[str, Row]:
+    """The rows of the tiles that are meant, with what each says of itself now.
+
+    Raises:
+        NoDeviceError: none of them is there.
+    """
+    for port, answer in ask(reader, rows).items():
+        row = rows[port]
+        row.hello, row.error = answer.hello, answer.problem or None
+        row.tile = row.tile or (answer.hello.tile if answer.hello else None)
+    chosen = {port: row for port, row in rows.items() if wanted is None or row.tile in wanted}
+    if not chosen:
+        raise NoDeviceError(
+            f"no tile {', '.join(map(str, sorted(wanted or ())))} answers; `tilenca monitor` shows which do"
+        )
+    return chosen
+
+
+def _set(reader: PortReader, rows: dict[str, Row], name: str, value: int | str, order: bytes) -> None:
+    """Sets it in all tiles that answered, and asks each what is in force then."""
+    speaking = {port: order for port, row in rows.items() if row.hello}
+    replies = command_all(reader, speaking, "SET")
+    done = [port for port, reply in replies.items() if not reply.problem]
+    for port, reply in replies.items():
+        rows[port].error = reply.problem or None
+    for port, answer in ask(reader, done).items():
+        row = rows[port]
+        row.hello, row.error = answer.hello or row.hello, answer.problem or None
+        if answer.hello is None:
+            continue
+        if name != "preset" and getattr(answer.hello, FIELDS[name]) != value:
+            row.error = f"acknowledged, but {name} is {getattr(answer.hello, FIELDS[name])}"
+            continue
+        row.result = "set"
+
+
+def _print(rows: list[Row], as_json: bool) -> None:
+    if as_json:
+        print(json.dumps({"tiles": [_document(row) for row in rows]}, indent=2))
+        return
+    lines = []
+    for row in rows:
+        settings = [str(value) for value in _settings(row).values()] or ["-"] * len(FIELDS)
+        lines.append([row.port, str(row.tile or "-"), row.result, *settings, row.error or ""])
+    print(table(HEADER, lines))
+
+
+def _settings(row: Row) -> dict[str, int]:
+    return {name: getattr(row.hello, field) for name, field in FIELDS.items()} if row.hello else {}
+
+
+def _document(row: Row) -> dict[str, Any]:
+    about = {"port": row.port, "tile": row.tile, "result": row.result, "error": row.error}
+    return {**about, "settings": _settings(row) or None}

@@ -1,0 +1,119 @@
+"""Which board is behind a port, when ports change and adapters are alike."""
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from serial.tools.list_ports_common import ListPortInfo
+
+from tilenca import boards, ports
+from tilenca.boards import find_boards, find_fleet, tile_numbers
+from tilenca.cli import main
+from tilenca.errors import NoDeviceError, UsageError
+from tilenca.tilesfile import Place, write_tiles
+
+
+def usb(
+    device: str, serial_number: str | None, location: str, ids: tuple[int, int] = (0x1A86, 0x7523)
+) -> ListPortInfo:
+    info = ListPortInfo(device)
+    info.vid, info.pid = ids
+    info.serial_number, info.location = serial_number, location
+    return info
+
+
+MEGA = (0x2341, 0x0042)
+LAB = [
+    usb("/dev/ttyACM0", "855", "1-1", MEGA),
+    usb("/dev/ttyUSB0", None, "1-2.1"),
+    usb("/dev/ttyUSB1", "", "1-2.2"),
+    usb("/dev/ttyUSB2", "A50285BI", "1-2.3", (0x0403, 0x6001)),
+    usb("/dev/ttyUSB10", "A50285BI", "1-2.4", (0x0403, 0x6001)),
+]
+
+
+@pytest.fixture
+def lab(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[ListPortInfo]:
+    """What is on USB; the test may change the list. No file of tiles but the test's own."""
+    infos = list(LAB)
+    for module in (boards, ports):
+        monkeypatch.setattr(module, "comports", lambda: infos)
+    monkeypatch.chdir(tmp_path)
+    return infos
+
+
+def test_boards_are_told_apart_by_serial_number_and_else_by_their_socket(lab: list[ListPortInfo]) -> None:
+    found = find_boards([], None)
+    assert [(board.port.name, board.name) for board in found.boards] == [
+        ("/dev/ttyACM0", "serial:855"),
+        ("/dev/ttyUSB0", "location:1-2.1"),
+        ("/dev/ttyUSB1", "location:1-2.2"),
+        ("/dev/ttyUSB2", "location:1-2.3"),
+        ("/dev/ttyUSB10", "location:1-2.4"),
+    ]
+
+
+def test_a_board_is_the_same_tile_when_its_port_has_another_name(lab: list[ListPortInfo]) -> None:
+    write_tiles(Path("tiles.toml"), [Place(7, "serial:855", 0, 0), Place(8, "location:1-2.1", 0, 1)])
+    lab[:] = [usb("/dev/ttyACM5", "855", "3-1", MEGA), usb("/dev/ttyUSB9", None, "1-2.1")]
+    assert {board.port.name: board.tile for board in find_boards([], None).boards} == {
+        "/dev/ttyACM5": 7,
+        "/dev/ttyUSB9": 8,
+    }
+
+
+def test_the_file_is_the_fleet_others_are_left_alone_and_missing_ones_told(
+    lab: list[ListPortInfo], capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_tiles(Path("tiles.toml"), [Place(7, "serial:855", 0, 0), Place(8, "location:9-9", 0, 1)])
+    found = find_boards([], None)
+    assert [board.tile for board in found.boards] == [7]
+    assert [place.tile for place in found.missing] == [8]
+    assert len(found.others) == 4
+    found.tell_others()
+    assert "left alone" in capsys.readouterr().err
+
+
+def test_a_serial_number_that_two_boards_have_by_now_names_none(lab: list[ListPortInfo]) -> None:
+    write_tiles(Path("tiles.toml"), [Place(7, "serial:A50285BI", 0, 0), Place(1, "serial:855", 0, 1)])
+    found = find_boards([], None)
+    assert [board.tile for board in found.boards] == [1]
+    assert [place.tile for place in found.missing] == [7]
+
+
+def test_no_listed_tile_at_all_is_no_device(lab: list[ListPortInfo]) -> None:
+    write_tiles(Path("tiles.toml"), [Place(7, "serial:other", 0, 0)])
+    with pytest.raises(NoDeviceError, match=r"none of the 1 tiles that tiles.toml lists"):
+        find_fleet([], None)
+
+
+@pytest.fixture
+def pty() -> Iterator[str]:
+    master, slave = os.openpty()
+    yield os.ttyname(slave)
+    os.close(master)
+    os.close(slave)
+
+
+def test_a_device_that_is_not_on_usb_is_found_by_its_name(
+    lab: list[ListPortInfo], pty: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lab.clear()
+    link = tmp_path / "tile-01"
+    link.symlink_to(pty)
+    write_tiles(tmp_path / "lab.toml", [Place(3, f"port:{link}", 4, 2), Place(4, "serial:none", 4, 3)])
+    assert main(["devices", "--json", "--tiles", "lab.toml"]) == 0
+    captured = capsys.readouterr()
+    document = json.loads(captured.out)
+    assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [(str(link), 3, 4, 2)]
+    assert document["missing"] == [{"tile": 4, "row": 4, "col": 3, "board": "serial:none"}]
+    assert captured.err == "tile 4 (serial:none): not connected\n"
+
+
+def test_lists_of_tiles() -> None:
+    assert tile_numbers("3,7, 9-11") == {3, 7, 9, 10, 11}
+    for wrong in ("", "x", "3-", "-3", "1,,2", "1-999"):
+        with pytest.raises(UsageError, match="not a list of tiles"):
+            tile_numbers(wrong)

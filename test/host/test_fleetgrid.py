@@ -1,0 +1,166 @@
+"""The monitor's picture: every tile in its place, with what it shows and how its links do."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+from test_telemetry import sentences
+
+from tilenca.fleetgrid import Cell, Grid, Mark
+from tilenca.fleetlive import LiveView
+from tilenca.fleetnews import Reporter
+from tilenca.fleetpicture import age_text, full, short, small
+from tilenca.linkhealth import WINDOW_MS, LinkHealth
+from tilenca.protocol import HelloSentence, LinkSentence, Sentence, TileSentence
+from tilenca.telemetry import Event, Fleet, Heard, PortNews
+from tilenca.tilesfile import Place
+
+# Ten classes in the last ten channels; the fifth is the greatest.
+STATE = bytes([128] * 15 + [200] + [100] * 5)
+FACING = dict(zip("NESW", "SWNE", strict=True))
+
+
+def link(
+    tile: int, side: str, other: int | None, uptime_ms: int = 0, received: int = 0, lost: int = 0
+) -> LinkSentence:
+    facing = None if other is None else FACING[side]
+    return LinkSentence(tile, uptime_ms, side, 0, received, 0, lost, 0, 9, 0, other, facing)
+
+
+class Lab:
+    """A fleet that is told what tiles say, and the news of it."""
+
+    def __init__(self) -> None:
+        self.fleet = Fleet()
+        self.reporter = Reporter(self.fleet)
+        self.news: list[str] = []
+
+    def take(self, event: Event) -> None:
+        self.fleet.take(event)
+        self.news += [news.text for news in self.reporter.take(event)]
+
+    def open(self, *ports: str) -> None:
+        for port in ports:
+            self.take(PortNews(0.0, port, is_open=True))
+
+    def say(self, port: str, *sentences: Sentence, time_s: float = 1.0) -> None:
+        for sentence in sentences:
+            self.take(Heard(time_s, port, b"", sentence))
+
+
+def three_in_an_l() -> Lab:
+    lab = Lab()
+    lab.open("a", "b", "c")
+    lab.say("a", TileSentence(1, 100, 7, "4", "-ES-", STATE), link(1, "E", 2), link(1, "S", 3))
+    lab.say("b", TileSentence(2, 100, 8, "4", "---W", STATE), link(2, "W", 1))
+    lab.say("c", TileSentence(3, 100, 9, "9", "N---", STATE), link(3, "N", 1))
+    return lab
+
+
+def test_tiles_lie_where_their_neighbours_say() -> None:
+    grid = Grid().cells(three_in_an_l().fleet, 1.5)
+    assert {place: cell.tile for place, cell in grid.items()} == {(0, 0): 1, (0, 1): 2, (1, 0): 3}
+    assert grid[0, 0].marks == {"N": Mark.NONE, "E": Mark.WELL, "S": Mark.WELL, "W": Mark.NONE}
+    assert (grid[1, 0].label, grid[1, 0].updates, grid[1, 0].age_s) == ("9", 9, 0.5)
+    assert grid[0, 0].colour == (5, 50, 30), "the digit 4 is aquamarine"
+
+
+def test_the_file_says_where_tiles_lie_and_which_are_missing() -> None:
+    places = [Place(1, "port:a", 0, 3), Place(2, "port:b", 1, 3), Place(9, "serial:x", 2, 3)]
+    grid = Grid(places).cells(three_in_an_l().fleet, 1.5)
+    assert {place: cell.tile for place, cell in grid.items()} == {(0, 3): 1, (1, 3): 2, (2, 3): 9, (3, 0): 3}
+    assert grid[2, 3].trouble == "no port"
+
+
+def test_a_link_that_should_be_there_is_marked_dead() -> None:
+    lab = three_in_an_l()
+    lab.say("b", TileSentence(2, 200, 9, "4", "----", STATE))
+    grid = Grid().cells(lab.fleet, 1.5)
+    assert grid[0, 1].marks["W"] is Mark.DEAD
+    assert grid[0, 0].marks["E"] is Mark.WELL, "the other direction is another link"
+    assert "lost its neighbour on W" in lab.news
+
+
+def test_silent_and_absent_tiles_are_marked_and_one_that_came_back_elsewhere_is_drawn_once() -> None:
+    lab = three_in_an_l()
+    lab.take(PortNews(2.0, "c", is_open=False, reason="went away"))
+    grid = Grid().cells(lab.fleet, 9.0)
+    assert {cell.tile: cell.trouble for cell in grid.values()} == {1: "silent", 2: "silent", 3: "away"}
+    lab.open("c2")
+    lab.say("c2", TileSentence(3, 100, 1, "4", "N---", STATE), time_s=9.0)
+    again = Grid().cells(lab.fleet, 9.0)
+    assert [cell.trouble for cell in again.values() if cell.tile == 3] == [""]
+
+
+def test_tiles_with_the_same_id_are_both_drawn() -> None:
+    lab = Lab()
+    lab.open("a", "b")
+    for port in ("a", "b"):
+        lab.say(port, TileSentence(7, 100, 1, "4", "----", STATE))
+    assert [cell.tile for cell in Grid().cells(lab.fleet, 1.0).values()] == [7, 7]
+
+
+def test_health_is_of_the_last_seconds_and_is_told_before_the_link_is_gone() -> None:
+    lab = three_in_an_l()
+    received = lost = 0
+    for second in range(40):
+        received, lost = received + (10 if second < 20 else 8), lost + (0 if second < 20 else 2)
+        lab.say("a", link(1, "E", 2, 1000 * second, received, lost))
+    assert [text for text in lab.news if "failing" in text] == [
+        "link E is failing: 12% of the frames get lost"
+    ]
+    assert Grid().cells(lab.fleet, 1.0)[0, 0].marks["E"] is Mark.FAILING
+    for second in range(40, 55):
+        received += 10
+        lab.say("a", link(1, "E", 2, 1000 * second, received, lost))
+    assert lab.news[-1] == "link E is well again"
+
+
+def test_health_begins_anew_when_a_tile_restarts() -> None:
+    health = LinkHealth()
+    assert health.good is None
+    for uptime_ms, received, lost in ((0, 100, 0), (1000, 100, 100), (500, 5, 0), (500 + WINDOW_MS, 15, 0)):
+        health.take(link(1, "E", 2, uptime_ms, received, lost))
+    assert health.good == 1.0
+
+
+def test_the_log_tells_what_changed_and_nothing_twice() -> None:
+    lab = Lab()
+    lab.open("a")
+    for label in ("4", "4", "9", "9"):
+        lab.say("a", TileSentence(1, 100, 1, label, "----", STATE))
+    lab.say("a", HelloSentence(2, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255))
+    lab.take(Heard(1.0, "a", b"\x1bnoise", None))
+    heads = [text.split(":")[0] for text in lab.news]
+    assert heads == ["port open", "shows 4", "shows 9, before 4", "started", "damaged"]
+    assert "watchdog" in lab.news[3]
+
+
+said: st.SearchStrategy[Event] = st.one_of(
+    st.builds(PortNews, st.just(1.0), st.sampled_from("abc"), st.booleans(), st.text(max_size=5)),
+    st.builds(Heard, st.floats(0, 9), st.sampled_from("abc"), st.binary(max_size=9), st.none() | sentences),
+)
+
+
+@given(st.lists(said, max_size=30), st.integers(1, 90), st.integers(1, 40), st.booleans())
+def test_whatever_is_heard_the_picture_fits_the_terminal(
+    events: list[Event], width: int, height: int, table: bool
+) -> None:
+    lab = Lab()
+    view = LiveView(lab.fleet, Grid(), Console(width=width, height=height), table)
+    for event in events:
+        lab.take(event)
+        view.show(9.0, [event])
+    lines = view.lines(width, height)
+    assert len(lines) <= height
+    assert all(line.cell_len <= width for line in lines)
+
+
+def test_boxes_and_lines_have_one_size_whatever_the_numbers() -> None:
+    for updates in (None, 0, 999, 9999, 10_000, 999_999, 4_294_967_295):
+        for age_s in (None, 0.5, 50.0, 5000.0, 1e6, 1e9):
+            cell = Cell(255, "8", (1, 2, 3), updates, 0.05, age_s, "silent", {"E": Mark.DEAD})
+            grid = {(0, 0): cell, (1, 1): Cell(None)}
+            assert {len(line) for line in full(grid, ascii_only=False)[:5]} == {13}
+            assert all(line.plain.isascii() for line in full(grid, ascii_only=True))
+            assert len(small(grid)[0]) <= 10
+    assert (short(12_345), age_text(0.5), age_text(7.2)) == ("12k", "", "7s")
