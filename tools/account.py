@@ -15,13 +15,15 @@ import cycles
 from tilenca import paths
 from tilenca.emulation import cables
 from tilenca.emulator import Array
-from tilenca.protocol import SIDE_LETTERS, settings_block
+from tilenca.protocol import SIDE_LETTERS, TimeSentence, settings_block
 from tilenca.shapes import Shape
+from tilenca.telemetry import LineReader
 
 CROSS = Shape("X", (".#.", "###", ".#."), "X")
 MIDDLE = 2
 PPM = (900.0, -900.0, 333.0, 500.0, -500.0)
 START_S = 1.0
+LEAST_SAID_S = 2.5  # a tile tells its times every second
 SAMPLE_S = 16e-6  # the shortest time an array runs
 FOLDER = paths.BUILD / "account"
 EXTRA_SCRIPT = paths.ROOT / "tools" / "links" / "debug_info.py"
@@ -79,12 +81,14 @@ class Account:
         period_ms: of the updates.
         shares: part of the time by what it is for, adding up to 1.
         neighbours: part of the time that hearing a neighbour takes, by its side.
+        worst_ms: the longest computation of an update, and the longest turn of the main loop, by name.
         interrupts: each of those that came.
     """
 
     period_ms: int
     shares: dict[str, float]
     neighbours: dict[str, float]
+    worst_ms: dict[str, float]
     interrupts: list[Interrupt]
 
 
@@ -211,6 +215,20 @@ def neighbours(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
     return {side: share - alone for side, share in awake.items()}
 
 
+def worst(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
+    """What the tile in the middle says of its worst moments."""
+    reader = LineReader()
+    with running(elf, period_ms) as array:
+        reader.feed(array[MIDDLE].read_serial())
+        array.run(max(seconds, LEAST_SAID_S))
+        said = [sentence for _, sentence in reader.feed(array[MIDDLE].read_serial())]
+    times = [sentence for sentence in said if isinstance(sentence, TimeSentence)]
+    return {
+        "longest computation of an update": max(time.compute_us for time in times) / 1000,
+        "longest turn of the main loop, sleep included": max(time.gap_us for time in times) / 1000,
+    }
+
+
 def account(period_ms: int, seconds: float) -> Account:
     """Builds, runs and measures.
 
@@ -222,5 +240,6 @@ def account(period_ms: int, seconds: float) -> Account:
         period_ms,
         shares(elf, period_ms, seconds),
         neighbours(elf, period_ms, seconds),
+        worst(elf, period_ms, seconds),
         interrupts(elf, period_ms, seconds),
     )

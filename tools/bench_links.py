@@ -132,6 +132,7 @@ def account_tables(found: account.Account) -> list[str]:
         f"| four neighbours, an update every {found.period_ms} ms | of a tile's time | ms per update |",
         "|---|---|---|",
         *rows,
+        *(f"| {moment} | | {ms:.2f} |" for moment, ms in found.worst_ms.items()),
         "",
         "| interrupt | per second | cycles, mean | longest | of the time |",
         "|---|---|---|---|---|",

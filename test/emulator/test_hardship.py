@@ -27,8 +27,8 @@ SLICE_S = 0.05
 # From here on all tiles have to be right.
 SETTLED_S = 5.0
 PPM_APART = 6000.0
-# Beside a tile that begins from its seed again and again, another may waver for so small a share of the time.
-WAVERING = 0.02
+# What is left of the 8 while a tile is away is another shape. Back for so long, it is an 8 again.
+BACK_S = 1.0
 TASK = load_task(paths.DEFAULT_SHAPES)
 LABEL = "8"
 SIZE = (7, 4)
@@ -66,8 +66,7 @@ class Field:
             tile.write_eeprom(0, settings_block(tile.index + 1, self.period_ms, 0))
         self.ledger = Ledger(self.array)
         self._vandals: list[Vandal] = []
-        self.looks = 0
-        self.wrong: Counter[int] = Counter()  # at so many of them a tile did not show the label
+        self.wrong: Counter[int] = Counter()  # at so many looks a tile did not show the label
 
     def vandalise(self, tile: int, side: int, edges: Edges) -> None:
         """Lets a side without a cable hear that."""
@@ -84,7 +83,6 @@ class Field:
             for _ in self.ledger.listen():
                 pass
             if now_s >= SETTLED_S:
-                self.looks += 1
                 self.wrong += Counter(tile for tile in watched if self.shown(tile) != LABEL)
 
     def shown(self, tile: int) -> str:
@@ -102,12 +100,6 @@ class Field:
             frames = self.ledger.frames(tile, side)
             assert (frames.corrupt, frames.lost) == (0, 0), f"tile {tile}, side {side}: {frames}"
             assert frames.received > 0.9 * (SECONDS - SETTLED_S) * 1000 / self.period_ms
-
-    def check_wavering(self, restarting: int) -> None:
-        """Only neighbours of a tile that restarts were ever wrong, and hardly."""
-        neighbours = {tile for tile, _ in self.facing(restarting)}
-        assert set(self.wrong) <= neighbours
-        assert max(self.wrong.values(), default=0) < WAVERING * self.looks
 
     def facing(self, tile: int) -> list[tuple[int, int]]:
         """The sides of other tiles that a cable joins to this one."""
@@ -177,21 +169,25 @@ def test_a_tile_that_browns_out_again_and_again_takes_nobody_along() -> None:
     draw = random.Random(5)
     while field.array.time_s < SECONDS:
         field.array[MIDDLE].reset(ResetCause.BROWN_OUT)
-        field.run(field.array.time_s + draw.choice([0.05, 0.3, 1.0, 2.5]), excused=[MIDDLE])
+        field.run(field.array.time_s + draw.choice([0.05, 0.3, BACK_S, BACK_S]), excused=range(20))
+        if draw.random() < 0.3:
+            field.run(field.array.time_s + BACK_S, excused=range(20))
+            field.run(field.array.time_s + BACK_S)
+    assert not field.wrong
     field.check(excused=[MIDDLE], spoilt=field.facing(MIDDLE))
-    field.check_wavering(MIDDLE)
-    assert field.ledger.hellos[MIDDLE] > 40
+    assert field.ledger.hellos[MIDDLE] > SECONDS / 2
 
 
 def test_a_tile_that_is_pulled_and_plugged_again_and_again_takes_nobody_along() -> None:
     field = Field(6)
     draw = random.Random(6)
-    tile, unplugged_s = 18, 0.7
+    tile = BOTTOM
     field.run(SETTLED_S)
     while field.array.time_s < SECONDS:
         field.array[tile].powered = False
-        field.run(field.array.time_s + unplugged_s, excused=[tile])
+        field.run(field.array.time_s + draw.uniform(0.1, 1.0), excused=range(20))
         field.array[tile].powered = True
-        field.run(field.array.time_s + draw.uniform(1.0, 3.0), excused=[tile])
+        field.run(field.array.time_s + BACK_S, excused=range(20))
+        field.run(field.array.time_s + draw.uniform(0.2, 1.5))
+    assert not field.wrong
     field.check(excused=[tile], spoilt=field.facing(tile))
-    field.check_wavering(tile)
