@@ -23,7 +23,7 @@ LOOK_BYTES = 5
 
 SRAM_BYTES = 8192
 # Variables and the deepest stack, less what `buffer_bytes` counts.
-OTHER_SRAM_BYTES = 1962
+OTHER_SRAM_BYTES = 2602
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the
 # emulated chip and fitted by `python tools/cycles.py`, which prints them anew when the firmware changes.
@@ -35,6 +35,7 @@ CYCLES_PER_MS = 1778.1  # updating or not
 
 CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10
+TOGGLES_PER_BYTE = 7
 FRAMING_BYTES = 2  # COBS and the delimiter
 # The part of the time that stays free at the shortest period; clocks drift, and telemetry comes in bursts.
 HEAD_ROOM = 0.2
@@ -136,7 +137,7 @@ def buffer_bytes(size: Dimensions) -> int:
     channels = size.channels
     cell = 2 * channels + 5 * channels
     links = 4 * (channels + (HEADER_SIZE + channels + CRC_SIZE + 1))
-    toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // 8)
+    toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // TOGGLES_PER_BYTE) + 1
     return cell + size.hidden1 + size.hidden2 + links + toggles
 
 
