@@ -25,7 +25,7 @@ MAX_LAYER_BYTES = 32767  # avr-gcc takes no larger array
 
 SRAM_BYTES = 8192
 # Variables and the deepest stack, less what `buffer_bytes` counts.
-OTHER_SRAM_BYTES = 2375
+OTHER_SRAM_BYTES = 2888
 
 # The share of each layer's inputs that is not zero: with four neighbours, the models that ship have no more.
 # An update without a zero takes some of HEAD_ROOM.
@@ -41,6 +41,7 @@ CYCLES_PER_MS = 2313.4  # updating or not
 
 CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10
+TOGGLES_PER_BYTE = 7
 FRAMING_BYTES = 2  # COBS and the delimiter
 # The part of the time that stays free at the shortest period; clocks drift, and telemetry comes in bursts.
 HEAD_ROOM = 0.08

@@ -12,6 +12,9 @@ struct Page {
     volatile uint8_t bytes[256];
 } __attribute__((aligned(256)));
 
+// Pages lie side by side: between other variables each would leave a gap before it.
+#define TILENCA_PAGE __attribute__((section(".bss.pages")))
+
 // One queue of kSize - 1 bytes at most in a page that it shares with 256 / kSize - 1 others. Indices are
 // single bytes and therefore never half-written when an interrupt looks.
 template <uint16_t kSize>

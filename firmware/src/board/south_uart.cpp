@@ -29,9 +29,9 @@ static_assert(kSouthTx.port == 'K' && kSouthTx.bit == 7, "the toggles below leav
 
 // A ring of edges. Its head is SOUTH_EDGE_HEAD, its tail SOUTH_EDGE_TAIL. That of an edge is the place of its
 // count's low byte and of port K's levels; the count's high byte lies one further.
-Page edge_lows;
-Page edge_highs;
-Page edge_levels;
+TILENCA_PAGE Page edge_lows;
+TILENCA_PAGE Page edge_highs;
+TILENCA_PAGE Page edge_levels;
 using Receiver = EdgeReceiver<kSouthBitCounts>;
 Receiver receiver;
 uint16_t looked_at = 0;  // when the ring was last looked at
@@ -41,7 +41,7 @@ uint16_t rests_since = 0;
 uint16_t overruns = 0;
 
 // What is being sent: SOUTH_TOGGLES is shifted out, these follow. The alignment keeps them in one page.
-volatile uint8_t toggles[kMaxToggleBytes] __attribute__((aligned(128)));
+TILENCA_PAGE volatile uint8_t toggles[kMaxToggleBytes] __attribute__((aligned(128)));
 static_assert(kMaxToggleBytes <= 128, "one index reaches all of them");
 volatile uint8_t toggles_at = 0; // the low byte of the next one's address
 

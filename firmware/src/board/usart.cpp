@@ -38,9 +38,9 @@ constexpr uint8_t kQuiet = 1 << TXEN0 | 1 << RXEN0 | 1 << RXCIE0;
 // round of sentences.
 using QuarterRing = Ring<64>;
 using HostRing = Ring<256>;
-Page received_page;
-Page sending_page;
-Page host_page;
+TILENCA_PAGE Page received_page;
+TILENCA_PAGE Page sending_page;
+TILENCA_PAGE Page host_page;
 QuarterRing received[4];
 QuarterRing sending[4];
 HostRing host_sending;
