@@ -4,7 +4,6 @@ The shape is an 8 of twenty tiles. Each test spoils something that the tiles bes
 all the others: right all the time, never restarted, not one frame damaged on a cable that was left alone.
 """
 
-import os
 import random
 from collections import Counter
 from collections.abc import Iterable
@@ -55,10 +54,7 @@ class Field:
         self.ppm = checkerboard(shape, PPM_APART)
         draw = random.Random(seed)
         start_s = [draw.uniform(0, 0.1) for _ in shape.cells]
-        threads = len(os.sched_getaffinity(0))  # they change no result
-        self.array = Array(
-            paths.FIRMWARE_ELF, len(shape.cells), self.cables, self.ppm, start_s, threads=threads
-        )
+        self.array = Array(paths.FIRMWARE_ELF, len(shape.cells), self.cables, self.ppm, start_s)
         defaults = firmware_settings(paths.FIRMWARE_ELF)
         assert defaults is not None
         self.period_ms = defaults.period_ms
