@@ -152,7 +152,7 @@ def buffer_bytes(size: Dimensions) -> int:
         (width // passes.PASS_OUTPUTS + 1) * passes.PASS_OUTPUTS for width in (size.hidden1, size.hidden2)
     )
     links = 4 * (channels + (HEADER_SIZE + channels + CRC_SIZE + 1))
-    toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // 8)
+    toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // TOGGLES_PER_BYTE) + 1
     return cell + hidden + links + toggles
 
 
