@@ -254,13 +254,13 @@ def test_the_emulated_tiles_are_measured_in_the_same_words(
 def test_the_emulated_tiles_agree_when_and_where_the_fast_simulator_does(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    words = ["--schedule", "clock", "--steps", "20"]
+    words = ["--schedule", "clock", "--steps", "40"]
     fast = evaluate(capsys, "--engine", "fast", "--runs", "200", *words)
     emulated = evaluate(capsys, "--engine", "emulator", "--runs", "1", *words)
     assert emulated["total_agreement"] == fast["total_agreement"] == 1.0
     for simulated, real in zip(fast["per_shape"], emulated["per_shape"], strict=True):
-        # The boards are switched on within a second; whoever waits for the last one has updated before.
-        least, most = 1, simulated["steps_to_agreement"]["p95"] + 3
+        # At 20 ms a message takes somewhat more than a period, in the simulator less; so twice the steps.
+        least, most = 1, 2 * simulated["steps_to_agreement"]["p95"] + 3
         assert least <= real["steps_to_agreement"]["median"] <= most, real["name"]
 
 
