@@ -2,20 +2,20 @@
 
 import queue
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tilenca.emulate_serve import MAX_LAG_S, STEP_S, STOCK_BOOTLOADER, ServedTile
+from tilenca.emulate_serve import STOCK_BOOTLOADER, ServedTile, keep_step
 from tilenca.emulation import Conditions, Emulation, firmware_settings, port_name
 from tilenca.shapes import load_task
 
 LIMIT_S = 120
-STANDSTILL_S = 1.0
-# With this byte a bootloader's answer begins; what the firmware says is text.
-START = 0x1B
+
+
+class _OverError(Exception):
+    """The lab closes."""
 
 
 class Lab:
@@ -30,9 +30,8 @@ class Lab:
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
-        self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
         self._served: dict[int, ServedTile] = {}
-        self._orders: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self._orders: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._serve, daemon=True)
 
     def port(self, tile: int) -> str:
@@ -48,7 +47,7 @@ class Lab:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._orders.put(None)
+        self._orders.put(_end)
         self._thread.join(LIMIT_S)
         assert not self._thread.is_alive(), "the lab hangs"
         for port in self._served.values():
@@ -56,32 +55,21 @@ class Lab:
         self._emulation.array.close()
 
     def _serve(self) -> None:
-        last_s = time.monotonic()
         while True:
-            time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
-            now_s = time.monotonic()
-            self._emulation.pass_time(min(now_s - last_s, MAX_LAG_S))
-            while not self._orders.empty():
-                if (order := self._orders.get()) is None:
-                    return
-                order()
-            answers = [port for port in self._served.values() if START in port.exchange()]
-            if answers:
-                self.talks_s.append(self.time_s)
-            last_s = now_s if self._await(answers) else time.monotonic()
+            try:
+                keep_step(self._emulation, list(self._served.values()), None, self._carry_out)
+            except _OverError:
+                return
+            except _ChangedError:
+                continue
 
-    @staticmethod
-    def _await(ports: list[ServedTile]) -> bool:
-        """Lets the tiles' time stand still until avrdude has taken bootloaders' answers; False if it did.
-
-        So how busy this machine is does not count.
-        """
-        end_s = time.monotonic() + STANDSTILL_S
-        stood = False
-        while time.monotonic() < end_s and not all(port.is_spoken_to() for port in ports):
-            time.sleep(STEP_S / 4)
-            stood = True
-        return not stood
+    def _carry_out(self) -> None:
+        changed = False
+        while not self._orders.empty():
+            self._orders.get()()
+            changed = True
+        if changed:
+            raise _ChangedError
 
     def do(self, order: Callable[[], None]) -> None:
         """Does something between two steps, and waits until it is done."""
@@ -116,3 +104,11 @@ class Lab:
     def _plug(self, tile: int) -> None:
         array = self._emulation.array
         self._served[tile] = ServedTile(array[tile - 1], Path(self.port(tile)), reset_on_open=True)
+
+
+class _ChangedError(Exception):
+    """Ports have come or gone."""
+
+
+def _end() -> None:
+    raise _OverError

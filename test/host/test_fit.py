@@ -114,7 +114,7 @@ def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytes
 
 def test_a_check_is_one_line_for_people() -> None:
     line = str(fit.check(Dimensions(37, 40, 40), 26))
-    assert line.startswith("fits a tile: 11,055 bytes of flash")
+    assert line.startswith("fits a tile: 10,985 bytes of flash")
 
 
 def test_more_classes_than_channels_are_refused() -> None:
