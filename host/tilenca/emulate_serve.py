@@ -54,8 +54,8 @@ class ServedTile:
                 f"{link}: {error.strerror}; give --serve a directory that can be written"
             ) from error
 
-    def exchange(self) -> None:
-        """Passes on what came in either direction since the last call."""
+    def exchange(self) -> bytes:
+        """Passes on what came in either direction since the last call; returns what the tile said."""
         events = dict(self._poll.poll(0)).get(self._master, 0)
         was_open, self._is_open = self._is_open, not events & select.POLLHUP
         if self._is_open and not was_open:
@@ -71,6 +71,11 @@ class ServedTile:
         if said and self._is_open:
             with suppress(BlockingIOError):  # nobody reads: the bytes are lost, as on USB
                 os.write(self._master, said)
+        return said
+
+    def is_spoken_to(self) -> bool:
+        """Whether something has come for the tile since, or the port was closed."""
+        return bool(self._poll.poll(0))
 
     def _hang_up(self) -> None:
         """DTR is down: whoever opens the port sees by HUPCL, as on a real one, that this raises it."""
@@ -122,7 +127,7 @@ def serve(
             served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
             stack.callback(served[-1].close)
         warn(f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it")
-        keep_step(emulation, served, seconds, on_slice)
+        _keep_step(emulation, served, seconds, on_slice)
 
 
 def _lock(directory: Path) -> int:
@@ -142,10 +147,9 @@ def _lock(directory: Path) -> int:
     return descriptor
 
 
-def keep_step(
+def _keep_step(
     emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
 ) -> None:
-    """Lets emulated and real time pass together, and serves ports; see `serve`."""
     started = last = time.monotonic()
     while seconds is None or last - started < seconds:
         time.sleep(max(0.0, last + STEP_S - time.monotonic()))

@@ -2,20 +2,21 @@
 
 import queue
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tilenca.emulate_serve import STOCK_BOOTLOADER, ServedTile, keep_step
+from tilenca.emulate_serve import MAX_LAG_S, STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.emulation import Conditions, Emulation, firmware_settings, port_name
 from tilenca.shapes import load_task
 
 LIMIT_S = 120
-
-
-class _OverError(Exception):
-    """The lab closes."""
+STANDSTILL_S = 1.0
+# A bootloader's answer: this byte, a sequence number, the size (two bytes), a token, the body, a checksum.
+# What the firmware says is text.
+START, ENVELOPE = b"\x1b", 6
 
 
 class Lab:
@@ -30,8 +31,10 @@ class Lab:
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
+        self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
+        self._answers: dict[ServedTile, bytes] = {}  # what each bootloader has said of its present one
         self._served: dict[int, ServedTile] = {}
-        self._orders: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._orders: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._serve, daemon=True)
 
     def port(self, tile: int) -> str:
@@ -47,7 +50,7 @@ class Lab:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._orders.put(_end)
+        self._orders.put(None)
         self._thread.join(LIMIT_S)
         assert not self._thread.is_alive(), "the lab hangs"
         for port in self._served.values():
@@ -55,21 +58,42 @@ class Lab:
         self._emulation.array.close()
 
     def _serve(self) -> None:
+        last_s = time.monotonic()
         while True:
-            try:
-                keep_step(self._emulation, list(self._served.values()), None, self._carry_out)
-            except _OverError:
-                return
-            except _ChangedError:
-                continue
+            time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
+            now_s = time.monotonic()
+            self._emulation.pass_time(min(now_s - last_s, MAX_LAG_S))
+            while not self._orders.empty():
+                if (order := self._orders.get()) is None:
+                    return
+                order()
+            last_s = now_s if self._await(self._exchange()) else time.monotonic()
 
-    def _carry_out(self) -> None:
-        changed = False
-        while not self._orders.empty():
-            self._orders.get()()
-            changed = True
-        if changed:
-            raise _ChangedError
+    def _exchange(self) -> list[ServedTile]:
+        """Serves the ports; returns those whose bootloader has come to the end of an answer."""
+        ended = []
+        for port in self._served.values():
+            answer = self._answers.get(port, b"") + port.exchange()
+            self._answers[port] = answer = answer[answer.find(START) :] if START in answer else b""
+            size = ENVELOPE + int.from_bytes(answer[2:4], "big")
+            if len(answer) >= max(size, ENVELOPE):
+                self._answers[port] = b""
+                self.talks_s.append(self.time_s)
+                ended.append(port)
+        return ended
+
+    @staticmethod
+    def _await(ports: list[ServedTile]) -> bool:
+        """Lets the tiles' time stand still until avrdude has reacted to all answers; whether it need not.
+
+        So how busy this machine is does not count.
+        """
+        end_s = time.monotonic() + STANDSTILL_S
+        stood = False
+        while time.monotonic() < end_s and not all(port.is_spoken_to() for port in ports):
+            time.sleep(STEP_S / 4)
+            stood = True
+        return not stood
 
     def do(self, order: Callable[[], None]) -> None:
         """Does something between two steps, and waits until it is done."""
@@ -104,11 +128,3 @@ class Lab:
     def _plug(self, tile: int) -> None:
         array = self._emulation.array
         self._served[tile] = ServedTile(array[tile - 1], Path(self.port(tile)), reset_on_open=True)
-
-
-class _ChangedError(Exception):
-    """Ports have come or gone."""
-
-
-def _end() -> None:
-    raise _OverError
