@@ -16,7 +16,7 @@ from tilenca.modelfile import load_model
 
 DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
 MODELS = paths.ROOT / "models"
-WIDTHS = ("digits-64", "digits")  # trained by the same recipe
+WIDTHS = ("digits-40", "digits-64", "digits")  # trained by the same recipe
 TASKS = ("hex", "letters", "pentominoes")
 # Of the rows of a width or a task: a short name, and how the row's name ends, with its steps.
 ROWS = {
