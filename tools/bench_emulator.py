@@ -135,10 +135,12 @@ def written(text: str, begin: str, end: str, section: str) -> str:
     return before + ours + rest.partition(end)[2]
 
 
-def put(document: Path, begin: str, end: str, section: str) -> None:
-    """Writes the section into the document."""
-    text = document.read_text(encoding="utf-8") if document.exists() else ""
-    document.write_text(written(text, begin, end, section), encoding="utf-8")
+def publish(section: str, document: Path | None, begin: str, end: str) -> None:
+    """Prints the section and, if there is a document, writes it there."""
+    print(section)
+    if document is not None:
+        text = document.read_text(encoding="utf-8") if document.exists() else ""
+        document.write_text(written(text, begin, end, section), encoding="utf-8")
 
 
 def main() -> int:
@@ -156,9 +158,7 @@ def main() -> int:
         section = table(measure(args.rounds, Path(directory)))
     cores = len(os.sched_getaffinity(0))
     section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; other programs may have run meanwhile."
-    print(section)
-    if args.write is not None:
-        put(args.write, BEGIN, END, section)
+    publish(section, args.write, BEGIN, END)
     return 0
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import kernel
-from bench_emulator import SOURCES, put
+from bench_emulator import SOURCES, publish
 from tilenca import fit, passes
 from tilenca.drawings import load_drawings
 from tilenca.emulator import Array
@@ -185,9 +185,7 @@ def main() -> int:
         print("bench: avr-gcc is not installed; the kernel is not measured", file=sys.stderr)
         return 0
     section = table(rows())
-    print(section)
-    if args.write is not None:
-        put(args.write, BEGIN, END, section)
+    publish(section, args.write, BEGIN, END)
     return 0
 
 

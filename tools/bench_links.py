@@ -13,7 +13,7 @@ from pathlib import Path
 import account
 import cycles
 import soak
-from bench_emulator import put
+from bench_emulator import publish
 from tilenca import paths
 from tilenca.emulation import firmware_settings
 from tilenca.emulator import NORTH, SOUTH, Array
@@ -154,9 +154,7 @@ def main() -> int:
     section = "\n".join(
         [*links_table(args.seconds, args.seconds / 2), "", *account_tables(account.account(period_ms, 5.0))]
     )
-    print(section)
-    if args.write is not None:
-        put(args.write, BEGIN, END, section)
+    publish(section, args.write, BEGIN, END)
     return 0
 
 

@@ -3,13 +3,16 @@
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from conversation import Talk
 
-from tilenca.emulator import LIBRARY
+from tilenca.emulator import LIBRARY, Array
+from tilenca.paths import FIRMWARE_ELF
+from tilenca.protocol import settings_block
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,6 +31,16 @@ def library() -> Path:
     """The emulator, up to date."""
     run_tool("make", "-C", ROOT / "tools" / "emulator")
     return LIBRARY
+
+
+@pytest.fixture
+def talk() -> Iterator[Talk]:
+    """A lone tile that has an id and a period, past its greeting."""
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, settings_block(7, 100, 0))
+        talk = Talk(array)
+        talk.listen(0.7)
+        yield talk
 
 
 def hex_record(kind: int, address: int, data: bytes) -> str:

@@ -1,7 +1,6 @@
 """The host's commands on the chip: settings in EEPROM, the face, and nothing that stalls the tile."""
 
 import random
-from collections.abc import Iterator
 
 import pytest
 from conversation import Talk
@@ -28,16 +27,6 @@ from tilenca.protocol import (
 )
 
 DARK, ALL = 0, GLYPHS["8"]
-
-
-@pytest.fixture
-def talk() -> Iterator[Talk]:
-    """A lone tile that has an id and a period, past its greeting."""
-    with Array(FIRMWARE_ELF) as array:
-        array[0].write_eeprom(0, settings_block(7, 100, 0))
-        talk = Talk(array)
-        talk.listen(0.7)
-        yield talk
 
 
 def test_the_firmware_id_is_that_of_the_hex_file(talk: Talk) -> None:

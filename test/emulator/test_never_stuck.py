@@ -25,15 +25,6 @@ HANGS, HANGS_DEAF = "__stop_program", "_exit"  # a jump to itself, and the `cli`
 POWER_ON, EXTERNAL, BROWN_OUT, WATCHDOG = 1, 2, 4, 8
 
 
-@pytest.fixture
-def talk() -> Iterator[Talk]:
-    with Array(FIRMWARE_ELF) as array:
-        array[0].write_eeprom(0, settings_block(7, 100, 0))
-        talk = Talk(array)
-        talk.listen(0.7)
-        yield talk
-
-
 def hang(talk: Talk, place: str) -> int:
     """Lets a tile loop for ever; returns where."""
     address = talk.array.code_address(place)
