@@ -51,7 +51,7 @@ class Link {
 
     // Writes the next frame to the neighbour (at most kMaxFrame bytes), from this side of the tile with this
     // id, and counts it as sent.
-    uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire);
+    uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire) __attribute__((noinline));
 
     // Whether a good frame ever came, when the last one did, and whence: the neighbour's id and its side.
     bool ever_received() const { return counters_.received != 0; }
@@ -64,6 +64,8 @@ class Link {
   private:
     enum class Who : uint8_t { NobodyYet, Silence, Neighbour, Stranger };
 
+    // Never inlined, as send(): the loop that takes in single bytes then finds registers for what it needs.
+    void frame_ended(bool good, uint32_t now_ms) __attribute__((noinline));
     void accept(uint32_t now_ms);
     void learn_pace(uint32_t now_ms);
 

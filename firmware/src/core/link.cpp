@@ -16,16 +16,18 @@ Link::Link(uint16_t model_id, uint8_t channels, uint16_t period_ms)
     : model_id_(model_id), channels_(channels), period_ms_(period_ms), decoder_(channels) {}
 
 void Link::receive(uint8_t byte, uint32_t now_ms) {
-    switch (decoder_.feed(byte)) {
-    case FrameDecoder::Result::Pending:
-        break;
-    case FrameDecoder::Result::Corrupt:
-        ++counters_.corrupt;
-        break;
-    case FrameDecoder::Result::Ready:
+    const FrameDecoder::Result result = decoder_.feed(byte);
+    if (result != FrameDecoder::Result::Pending) {
+        frame_ended(result == FrameDecoder::Result::Ready, now_ms);
+    }
+}
+
+void Link::frame_ended(bool good, uint32_t now_ms) {
+    if (good) {
         tick(now_ms); // a frame that ends a silence must not count what was missed during it
         accept(now_ms);
-        break;
+    } else {
+        ++counters_.corrupt;
     }
 }
 
