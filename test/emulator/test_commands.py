@@ -165,13 +165,15 @@ SEGMENT_PINS = [("H", 4), ("H", 3), ("E", 3), ("B", 7), ("B", 6), ("H", 6), ("H"
 
 def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
     def duties() -> list[float]:
-        """All segments, which are lit while the face blinks; and the colour then."""
+        """All segments, which are lit while the face blinks; and the colour then, which follows them."""
         talk.ask(blink_command(5))
-        for _ in range(100):
-            talk.listen(0.01)
-            if talk.tile.segments == ALL:
-                break
-        return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [value / 255 for value in talk.tile.rgb]
+        lit = 0
+        for _ in range(200):
+            talk.listen(0.005)
+            lit = lit + 1 if talk.tile.segments == ALL else 0
+            if lit == 3:
+                return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [v / 255 for v in talk.tile.rgb]
+        raise AssertionError("a blinking face is lit half of the time")
 
     full = duties()
     assert full[:7] == [1.0] * 7
