@@ -172,6 +172,8 @@ void setup() {
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
     }
+    while (!board::stack_watch()) { // so that the first report knows
+    }
     board::clock_begin();
     board::links_begin();
     board::face_begin();

@@ -22,7 +22,7 @@ from tilenca.protocol import (
 )
 
 CLOCK = 16_000_000
-BOOTLOADER_AT = 0x3E000
+BOOTLOADER_AT, RAM_END = 0x3E000, 0x2200
 HANGS, HANGS_DEAF = "__stop_program", "_exit"  # a jump to itself, and the `cli` before it
 POWER_ON, EXTERNAL, BROWN_OUT, WATCHDOG = 1, 2, 4, 8
 
@@ -133,6 +133,16 @@ def test_the_unused_stack_is_what_the_emulator_says(talk: Talk) -> None:
     talk.listen(3.0)
     stack = talk.tile.stack
     assert talk.last(TimeSentence).stack_unused == pytest.approx(stack.deepest - stack.floor, abs=2)
+
+
+def test_the_first_report_of_a_slow_tile_knows_its_stack() -> None:
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, settings_block(7, 10_000, 0))
+        talk = Talk(array)
+        talk.listen(1.3)
+        stack = array[0].stack
+    unused = talk.last(TimeSentence).stack_unused
+    assert stack.deepest - stack.floor <= unused < RAM_END - stack.floor
 
 
 def test_a_stack_that_was_almost_full_is_told_once(talk: Talk) -> None:
