@@ -80,8 +80,8 @@ class Link {
     Side neighbour_side_ = Side::North;
     uint8_t sequence_in_ = 0;  // of the last frame heard, whoever sent it
     uint8_t sequence_out_ = 0; // of the next frame to send
-    uint32_t heard_ms_ = 0; // that frame
-    uint32_t last_ms_ = 0;  // the last good one
+    uint32_t heard_ms_ = 0;    // that frame
+    uint32_t last_ms_ = 0;     // the last good one
     int8_t message_[kMaxChannels] = {};
 };
 
