@@ -8,7 +8,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 import kernel
 from bench_emulator import SOURCES, publish
+from networks import network
 from tilenca import fit, passes
 from tilenca.drawings import load_drawings
 from tilenca.emulator import Array
-from tilenca.glyphs import GLYPHS
 from tilenca.modelfile import Dimensions, Model, load_model
 from tilenca.paths import ROOT, SHAPES
 from tilenca.simulate import Conditions, FastEngine, Simulator
@@ -84,9 +84,9 @@ def any_model(size: Dimensions, narrow: bool) -> Model:
             integer[name] = weights.astype(np.int8)
     if not narrow:
         integer["w1"] *= random.choice(np.array([-1, 1], np.int8), integer["w1"].shape)
-    model = Model(tuple(GLYPHS)[:10], size, integer, {})
+    model = network(size, integer)
     assert {one.narrow for layer in (1, 2, 3) for one in passes.passes(model, layer)} == {narrow}
-    return replace(model, floats={name: array.astype(np.float32) for name, array in integer.items()})
+    return model
 
 
 def dense(size: Dimensions) -> Given:

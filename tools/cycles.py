@@ -14,15 +14,14 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from networks import network
 from tilenca import export, fit, paths
 from tilenca.emulation import cables
 from tilenca.emulator import Array
-from tilenca.glyphs import GLYPHS
 from tilenca.modelfile import Dimensions, Model
 from tilenca.protocol import settings_block
 from tilenca.shapes import Shape
@@ -39,7 +38,6 @@ WIDTHS = (
     Dimensions(21, 96, 96),
 )
 PERIODS_MS = (100, 200, 400)
-CLASSES = 10
 UPDATES = 20
 START_S = 1.0
 WEIGHT, BIAS = 20, 16000
@@ -76,7 +74,7 @@ class Probe:
         half = self.active[0] < size.channels
         state = np.where(half & (channel % 2 == 1), 0, np.where(channel // 2 % 2 == 0, 1, -1))
         signs = state * np.where((channel // 2 if half else channel) % 2 == 0, 1, -1)
-        integer: dict[str, NDArray[Any]] = {
+        integer = {
             "w1": np.tile(WEIGHT * signs, (size.hidden1, 5)),
             "w2": np.tile(WEIGHT * alternating(size.hidden1), (size.hidden2, 1)),
             "w3": np.outer(abs(state), WEIGHT * alternating(size.hidden2)),
@@ -84,11 +82,7 @@ class Probe:
             "b2": np.where(np.arange(size.hidden2) < self.active[2], BIAS, -BIAS),
             "b3": state * 32767,
         }
-        integer = {
-            name: array.astype(np.int8 if name[0] == "w" else np.int16) for name, array in integer.items()
-        }
-        floats = {name: array.astype(np.float32) for name, array in integer.items()}
-        return Model(tuple(GLYPHS)[:CLASSES], size, integer, floats)
+        return network(size, integer)
 
 
 def environment(**options: Path) -> dict[str, str]:

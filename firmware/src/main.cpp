@@ -28,10 +28,13 @@ static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeri
 Telemetry telemetry;
 
 Settings read_settings() {
-    uint8_t block[kSettingsSize];
-    board::eeprom_read(block, sizeof block);
+    uint8_t first[kSettingsSize], second[kSettingsSize];
+    while (board::eeprom_writing()) { // since before a reset
+    }
+    board::eeprom_read(board::Kept::First, first, sizeof first);
+    board::eeprom_read(board::Kept::Second, second, sizeof second);
     Settings settings = kDefaults;
-    if (!parse_settings(block, &settings) && !is_blank(block)) {
+    if (!parse_settings(first, &settings) && !parse_settings(second, &settings) && !is_blank(first)) {
         telemetry.failed(Error::Settings);
     }
     return settings;
@@ -96,7 +99,7 @@ void obey(uint32_t now_ms) {
     if (storing && !board::eeprom_writing() && room_to_speak()) {
         storing = false;
         uint8_t kept[kSettingsSize];
-        board::eeprom_read(kept, sizeof kept);
+        board::eeprom_read(board::Kept::First, kept, sizeof kept);
         host.stored(kept, &tile, &sentence);
         say_sentence();
     }
@@ -168,6 +171,8 @@ void setup() {
     boot = {board::reset_cause(), board::firmware_id()};
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
+    }
+    while (!board::stack_watch()) { // so that the first report knows
     }
     board::clock_begin();
     board::links_begin();

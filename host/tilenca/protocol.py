@@ -105,7 +105,7 @@ class LinkSentence:
 
     Attributes:
         age_ms: of the last good frame; None before the first, as are the next two.
-        overruns: bytes or edges lost for want of room.
+        overruns: bytes lost for want of room; south: how often edges were, or were given up as noise.
         neighbour: id of the tile that sent the last good frame; 0 if it has none.
         neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
     """

@@ -1,5 +1,6 @@
 """The host's commands on the chip: settings in EEPROM, the face, and nothing that stalls the tile."""
 
+import itertools
 import random
 
 import pytest
@@ -165,13 +166,15 @@ SEGMENT_PINS = [("H", 4), ("H", 3), ("E", 3), ("B", 7), ("B", 6), ("H", 6), ("H"
 
 def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
     def duties() -> list[float]:
-        """All segments, which are lit while the face blinks; and the colour then."""
+        """All segments, which are lit while the face blinks; and the colour then, which follows them."""
         talk.ask(blink_command(5))
-        for _ in range(100):
-            talk.listen(0.01)
-            if talk.tile.segments == ALL:
-                break
-        return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [value / 255 for value in talk.tile.rgb]
+        lit = 0
+        for _ in range(200):
+            talk.listen(0.005)
+            lit = lit + 1 if talk.tile.segments == ALL else 0
+            if lit == 3:
+                return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [v / 255 for v in talk.tile.rgb]
+        raise AssertionError("a blinking face is lit half of the time")
 
     full = duties()
     assert full[:7] == [1.0] * 7
@@ -222,3 +225,52 @@ def test_damaged_settings_are_told_and_blank_ones_are_not(contents: bytes, told:
     assert [error.code for error in errors] == (["SETTINGS"] if told else [])
     hello = next(s for s in said if isinstance(s, HelloSentence))
     assert hello.tile == (7 if contents == settings_block(7, 100, 0) else 0)
+
+
+def boots_with(eeprom: bytes) -> tuple[int, ...]:
+    """The settings of a tile that starts with this EEPROM; it must not complain."""
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, eeprom)
+        said = Talk(array).listen(0.2)
+    assert not any(isinstance(s, ErrorSentence) for s in said)
+    hello = next(s for s in said if isinstance(s, HelloSentence))
+    return hello.tile, hello.period_ms, hello.updates, hello.brightness
+
+
+@pytest.mark.parametrize("before", [settings_block(7, 100, 0), settings_block(7, 100, 0) * 2])
+def test_when_the_power_fails_while_settings_are_written_the_old_or_the_new_ones_hold(before: bytes) -> None:
+    """Cut off in every byte: it is as it was, erased, half written, or whole."""
+    old, new = (7, 100, 0, 255), (7, 257, 0, 255)  # both bytes of the period, and of the CRC
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, before)
+        talk = Talk(array)
+        talk.listen(0.3)
+        images = [array[0].read_eeprom(0, 24)]
+        array[0].write_serial(set_command("period", 257))
+        for _ in range(100):
+            array.run(0.001)
+            if (image := array[0].read_eeprom(0, 24)) != images[-1]:
+                images.append(image)
+    assert images[-1] == settings_block(7, 257, 0) * 2
+    found = []
+    for earlier, later in itertools.pairwise(images):
+        (at,) = [n for n in range(24) if earlier[n] != later[n]]
+        for torn in (earlier[at], 0xFF, later[at] | 0x0F, later[at]):
+            found.append(boots_with(earlier[:at] + bytes([torn]) + earlier[at + 1 :]))
+    assert found == sorted(found), "once new, always new"
+    assert set(found) == {old, new}
+
+
+def test_a_reset_while_a_byte_is_written_does_not_hide_the_settings(talk: Talk) -> None:
+    """The start-up code alone takes about as long as a byte; a shorter one must not read too early."""
+    talk.tile.write_serial(set_command("id", 9))
+    done = settings_block(9, 100, 0)
+    for _ in range(2000):
+        talk.array.run(0.00005)
+        if talk.tile.read_eeprom(0, 12) == done:  # the last byte is on its way
+            break
+    talk.tile.reset()
+    talk.said.clear()
+    talk.listen(0.3)
+    assert talk.last(HelloSentence).tile == 9
+    assert not any(isinstance(s, ErrorSentence) for s in talk.said)

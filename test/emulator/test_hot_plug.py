@@ -151,3 +151,27 @@ def test_a_tile_replaced_by_another_is_known_by_its_id() -> None:
         neighbours = [s.neighbour for s in said if isinstance(s, LinkSentence) and s.side == "E"]
         assert (neighbours[0], neighbours[-1]) == (5, 6)
         assert array[0].leds == (False, True, False, False)
+
+
+SLOW_MS, FAST_MS = 1000, 20
+
+
+def test_a_neighbour_that_updates_seldom_is_there_all_the_time_and_silent_after_four_of_its_periods() -> None:
+    pair = Shape("1", ("##",), "pair")
+    with Array(paths.FIRMWARE_ELF, 2, cables(pair)) as array:
+        for tile, period_ms in zip(array, (FAST_MS, SLOW_MS), strict=True):
+            tile.write_eeprom(0, settings_block(tile.index + 1, period_ms, 0))
+        readers = [LineReader() for _ in array]
+
+        def heard(seconds: float) -> list[set[str]]:
+            array.run(seconds)
+            said = [reader.feed(tile.read_serial()) for reader, tile in zip(readers, array, strict=True)]
+            return [{s.links for _, s in lines if isinstance(s, TileSentence)} for lines in said]
+
+        assert heard(1.5)[0] == {"----", "-E--"}, "its pace is not known before its second frame"
+        assert heard(4.0) == [{"-E--"}, {"---W"}]
+        array[1].powered = False
+        heard(0.0)
+        assert heard(3 * SLOW_MS / 1000)[0] == {"-E--"}
+        assert heard(SLOW_MS / 1000 + 0.1)[0] == {"-E--", "----"}
+        assert array[0].leds == (False,) * 4

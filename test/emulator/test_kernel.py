@@ -1,6 +1,5 @@
 """The forward pass in assembly, against the portable C++ compiled for the chip and against numpy."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,36 +9,14 @@ import bench_kernel
 import kernel
 import stack
 from disassembly import disassemble, parse
+from networks import random_network, uniform_network
 from tilenca import fit, passes
 from tilenca.emulator import Array, EmulatedTile
-from tilenca.glyphs import GLYPHS
 from tilenca.modelfile import Dimensions, Model, load_model
 from tilenca.paths import ROOT
 
 DRIVER = Path(__file__).with_name("kernel.cpp")
 MOST_S = 200
-
-
-def model_of(size: Dimensions, reach: int, bias: int, seed: int = 1) -> Model:
-    """Random weights of up to +-reach, ends included, and biases of up to +-bias."""
-    random = np.random.default_rng(seed)
-    integer = {}
-    for name, shape in size.shapes().items():
-        if name.startswith("w"):
-            integer[name] = random.integers(-reach, reach + 1, shape).astype(np.int8)
-        else:
-            integer[name] = random.integers(-bias, bias + 1, shape).astype(np.int16)
-    floats = {name: array.astype(np.float32) for name, array in integer.items()}
-    return Model(tuple(GLYPHS)[: min(10, size.channels - 1)], size, integer, floats)
-
-
-def with_all(model: Model, weight: int, bias: int) -> Model:
-    """The model with all its weights and all its biases alike."""
-    integer = {
-        name: np.full_like(array, weight if name.startswith("w") else bias)
-        for name, array in model.integer.items()
-    }
-    return replace(model, integer=integer)
 
 
 def run(model: Model, folder: Path, vectors: int, *options: str) -> EmulatedTile:
@@ -71,7 +48,7 @@ SIZES = [
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_every_pass_is_that_of_the_portable_code(size: Dimensions, tmp_path: Path) -> None:
     vectors = min(3000, 6_000_000 // (size.hidden1 * size.channels * 5 + size.hidden1 * size.hidden2))
-    tile = run(model_of(size, 127, 32767), tmp_path, vectors)
+    tile = run(random_network(size, 127, 32767), tmp_path, vectors)
     assert tile.integer("differences") == 0
     assert tile.integer("zero_outputs") > 0
     assert tile.integer("full_outputs") > 0
@@ -83,7 +60,7 @@ def test_every_pass_is_that_of_the_portable_code(size: Dimensions, tmp_path: Pat
 @pytest.mark.parametrize("size", [Dimensions(21, 40, 40), Dimensions(5, 12, 20)], ids=str)
 def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(size: Dimensions, tmp_path: Path) -> None:
     """Weights just small enough: the drawn inputs along a row's signs make its sum the greatest there is."""
-    model = model_of(size, 4 if size.channels == 21 else 8, 100)
+    model = random_network(size, 4 if size.channels == 21 else 8, 100)
     for layer in (1, 2, 3):
         weights, biases = model.integer[f"w{layer}"], model.integer[f"b{layer}"]
         low, high = (
@@ -109,14 +86,14 @@ def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(size: Dimensions, tmp_p
 @pytest.mark.parametrize("bias", [-32768, 32767])
 def test_nothing_wraps_at_the_extremes(weight: int, bias: int, tmp_path: Path) -> None:
     size = Dimensions(51, 120, 127)
-    tile = run(with_all(model_of(size, 1, 1), weight, bias), tmp_path, 60)
+    tile = run(uniform_network(size, weight, bias), tmp_path, 60)
     assert tile.integer("differences") == 0
 
 
 @pytest.mark.parametrize("reach", [3, 127])
 def test_interrupts_between_any_two_instructions_change_nothing(reach: int, tmp_path: Path) -> None:
     """They multiply, read flash, and come at random, as often as the chip can bear."""
-    tile = run(model_of(Dimensions(21, 40, 40), reach, 100), tmp_path, 300, "-DHOSTILE")
+    tile = run(random_network(Dimensions(21, 40, 40), reach, 100), tmp_path, 300, "-DHOSTILE")
     assert tile.integer("interrupts") > 10_000
     assert (tile.integer("wide_passes") == 0) == (reach == 3)
     assert tile.integer("differences") == 0
@@ -142,7 +119,7 @@ def test_the_shipped_model_on_the_chip_is_numpy(tmp_path: Path) -> None:
 
 
 def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
-    elf = kernel.program(model_of(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
+    elf = kernel.program(random_network(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
     listing = parse(disassemble(elf))
     found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_passes"])
     assert found + stack.RETURN_ADDRESS == 33

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from conftest import hex_record
 from conversation import Talk
 
 from tilenca.emulate_serve import STOCK_BOOTLOADER
@@ -21,6 +22,7 @@ from tilenca.protocol import (
 )
 
 CLOCK = 16_000_000
+BOOTLOADER_AT, RAM_END = 0x3E000, 0x2200
 HANGS, HANGS_DEAF = "__stop_program", "_exit"  # a jump to itself, and the `cli` before it
 POWER_ON, EXTERNAL, BROWN_OUT, WATCHDOG = 1, 2, 4, 8
 
@@ -78,6 +80,32 @@ def test_a_tile_that_hangs_with_interrupts_off_is_reset(talk: Talk) -> None:
     assert not any(isinstance(s, HelloSentence) for s in talk.said[said:]), "once is enough"
 
 
+def long_way_round(path: Path) -> Path:
+    """The stock boot loader behind erased flash as the chip runs it: 0xFFFF skips nothing while r31 is 0.
+
+    The emulator stops there instead, so that a program that goes astray is noticed.
+    """
+    no_operation, half = bytes(16), 0x10000
+    records = []
+    for page, end in ((2, half), (3, BOOTLOADER_AT % half)):
+        records.append(hex_record(4, 0, bytes([0, page])))
+        records += [hex_record(0, at, no_operation) for at in range(0, end, len(no_operation))]
+    path.write_text("".join(records) + needs(STOCK_BOOTLOADER).read_text())
+    return path
+
+
+def test_behind_the_stock_boot_loader_it_comes_back_by_the_long_way(tmp_path: Path) -> None:
+    """A true watchdog reset: the boot loader jumps into erased flash, which ends where it begins itself."""
+    with Array(FIRMWARE_ELF, bootloader=long_way_round(tmp_path / "boot.hex")) as array:
+        talk = Talk(array)
+        talk.listen(1.5)
+        hang(talk, HANGS_DEAF)
+        talk.listen(2.5)
+        hellos = [s for s in talk.said if isinstance(s, HelloSentence)]
+        assert [hello.reset_cause for hello in hellos] == [EXTERNAL], "MCUSR is gone: it looks like a reset"
+        assert talk.last(TileSentence).updates > 20
+
+
 def test_the_cause_of_a_start_is_told(talk: Talk) -> None:
     assert talk.last(HelloSentence).reset_cause == POWER_ON
     for cause, told in ((ResetCause.EXTERNAL, EXTERNAL), (ResetCause.BROWN_OUT, BROWN_OUT)):
@@ -105,6 +133,16 @@ def test_the_unused_stack_is_what_the_emulator_says(talk: Talk) -> None:
     talk.listen(3.0)
     stack = talk.tile.stack
     assert talk.last(TimeSentence).stack_unused == pytest.approx(stack.deepest - stack.floor, abs=2)
+
+
+def test_the_first_report_of_a_slow_tile_knows_its_stack() -> None:
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, settings_block(7, 10_000, 0))
+        talk = Talk(array)
+        talk.listen(1.3)
+        stack = array[0].stack
+    unused = talk.last(TimeSentence).stack_unused
+    assert stack.deepest - stack.floor <= unused < RAM_END - stack.floor
 
 
 def test_a_stack_that_was_almost_full_is_told_once(talk: Talk) -> None:

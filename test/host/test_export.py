@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_native import random_model
 
+from networks import random_network
 from tilenca import export, fit, passes, paths
 from tilenca.cli import main
 from tilenca.errors import BuildError
@@ -23,7 +23,7 @@ HEADER, SOURCE = export.TEMPLATES.values()
 
 @pytest.fixture
 def model() -> Model:
-    return replace(random_model(SIZE, 127, seed=3), labels=("4", "b", "-"))
+    return replace(random_network(SIZE, 127, seed=3), labels=("4", "b", "-"))
 
 
 @pytest.fixture
@@ -158,7 +158,7 @@ def test_check_names_what_differs_and_changes_nothing(
 
 
 def test_another_model_replaces_rendered_files(model_directory: Path, firmware: Path, tmp_path: Path) -> None:
-    replace(random_model(SIZE, 9, seed=4), labels=("1", "2")).save(tmp_path / "other")
+    replace(random_network(SIZE, 9, seed=4), labels=("1", "2")).save(tmp_path / "other")
     assert run("--model", tmp_path / "other", "--out", firmware) == 0
     assert run("--model", model_directory, "--out", firmware) == 0
     assert run("--model", model_directory, "--out", firmware, "--check") == 0
@@ -241,7 +241,7 @@ def test_a_directory_that_is_no_model_is_a_usage_error(
 
 def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> passes.Pass:
     """The only pass of a layer with these weights."""
-    model = random_model(Dimensions(1, 1, 1), 1, seed=1)
+    model = random_network(Dimensions(1, 1, 1), 1)
     integer = dict(model.integer)
     integer[f"w{layer}"], integer[f"b{layer}"] = np.array(weights, np.int8), np.array(biases, np.int16)
     (found,) = passes.passes(replace(model, integer=integer), layer)
@@ -311,11 +311,11 @@ def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: py
 )
 def test_a_model_too_wide_for_the_firmware_is_refused(size: Dimensions, words: str) -> None:
     with pytest.raises(BuildError, match=words):
-        export.check_fits(random_model(size, 9, seed=1))
+        export.check_fits(random_network(size, 9))
 
 
 def test_a_weight_of_minus_128_is_refused() -> None:
-    model = random_model(SIZE, 9, seed=1)
+    model = random_network(SIZE, 9)
     model.integer["w2"][3, 3] = -128
     with pytest.raises(BuildError, match="w2 has a weight of -128"):
         export.check_fits(model)
@@ -323,7 +323,7 @@ def test_a_weight_of_minus_128_is_refused() -> None:
 
 def test_the_widest_model_of_the_largest_weights_fits() -> None:
     size = Dimensions(51, 120, 127)
-    model = random_model(size, 127, seed=1)
+    model = random_network(size, 127)
     for name, array in model.integer.items():
         array.fill(127 if name.startswith("w") else -32768)
     export.check_fits(model)

@@ -6,23 +6,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from networks import network, random_network, uniform_network
 from tilenca import native
 from tilenca.errors import BuildError
 from tilenca.modelfile import Dimensions, Model
 
 SEED_STATE = 8192
-
-
-def random_model(size: Dimensions, reach: int, seed: int) -> Model:
-    """A model with weights of up to +-reach and biases of up to 256 times that."""
-    rng = np.random.default_rng(seed)
-    integer: dict[str, NDArray[np.int8] | NDArray[np.int16]] = {}
-    for name, shape in size.shapes().items():
-        if name.startswith("w"):
-            integer[name] = rng.integers(-reach, reach + 1, shape).astype(np.int8)
-        else:
-            integer[name] = rng.integers(-256 * reach, 256 * reach + 1, shape).astype(np.int16)
-    return Model(("0",), size, integer, {name: array.astype(np.float32) for name, array in integer.items()})
 
 
 def reference(model: Model, states: NDArray[np.int16], inputs: NDArray[np.int8]) -> NDArray[np.int64]:
@@ -47,7 +36,7 @@ SIZES = [
 @pytest.mark.parametrize("reach", [2, 20, 127])
 def test_every_state_of_a_long_run_is_the_reference(size: Dimensions, reach: int) -> None:
     """A ring of cells that hear each other on all four sides."""
-    model = random_model(size, reach, seed=reach)
+    model = random_network(size, reach, seed=reach)
     states = np.zeros((12, size.channels), dtype=np.int16)
     states[:, 0] = SEED_STATE
     # Cells that differ, or all would stay equal: some start at the extremes.
@@ -68,13 +57,7 @@ def test_every_state_of_a_long_run_is_the_reference(size: Dimensions, reach: int
 @pytest.mark.parametrize("state", [-16256, 16256])
 def test_nothing_wraps_at_the_extremes(weight: int, bias: int, message: int, state: int) -> None:
     size = Dimensions(51, 127, 127)
-    integer = {
-        name: np.full(
-            shape, weight if name.startswith("w") else bias, np.int8 if name.startswith("w") else np.int16
-        )
-        for name, shape in size.shapes().items()
-    }
-    model = Model(("0",), size, integer, {})
+    model = uniform_network(size, weight, bias)
     states = np.full((3, 51), state, dtype=np.int16)
     inputs = np.full((3, 255), message, dtype=np.int8)
     np.testing.assert_array_equal(
@@ -102,7 +85,7 @@ def test_cells_side_by_side_are_to_the_bit_what_the_chips_code_makes_of_each(
 ) -> None:
     rng = np.random.default_rng(size.channels)
     for reach in (1, 12, 60, 127):
-        model = random_model(size, reach, seed=reach)
+        model = random_network(size, reach, seed=reach)
         for count in (1, lanes - 1, lanes, 5 * lanes + 3):
             # Random values, among them the ends of their range in whole cells and here and there.
             states = rng.integers(-16256, 16257, (count, size.channels)).astype(np.int16)
@@ -122,14 +105,11 @@ def test_cells_side_by_side_are_to_the_bit_what_the_chips_code_makes_of_each(
 def test_the_greatest_sums_there_can_be_are_exact_in_float32(lanes: int, sign: int) -> None:
     """All products have the same sign, and are odd in the end: 2^23 is near, and every unit counts."""
     size = Dimensions(51, 127, 127)
-    model = random_model(size, 127, seed=3)
-    integer = {
-        name: np.full_like(array, 127 if name[0] == "w" else 32767) for name, array in model.integer.items()
-    }
+    integer = uniform_network(size, 127, 32767).integer
     rng = np.random.default_rng(4)
-    integer["w3"] = (sign * integer["w3"]).astype(np.int8)
+    integer["w3"] *= sign
     integer["w1"][:, -1] = rng.integers(-127, 128, 127)  # the sums differ in their last bits
-    model = Model(("0",), size, integer, {})
+    model = network(size, integer)
     states = rng.integers(-16256, 16257, (40, 51)).astype(np.int16)
     inputs = np.full((40, 255), 127, np.int8)
     inputs[:, -1] = rng.integers(-127, 128, 40)
@@ -138,13 +118,13 @@ def test_the_greatest_sums_there_can_be_are_exact_in_float32(lanes: int, sign: i
 
 @pytest.mark.parametrize("lanes", [-1, 2, 5, 32])
 def test_a_number_of_lanes_that_no_machine_has_is_refused(lanes: int) -> None:
-    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    model = random_network(Dimensions(4, 6, 6), 30)
     with pytest.raises(ValueError, match=f"cannot compute {lanes} cells side by side"):
         native.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8), lanes)
 
 
 def test_any_number_of_leading_axes_and_no_change_of_the_arguments() -> None:
-    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    model = random_network(Dimensions(4, 6, 6), 30)
     rng = np.random.default_rng(2)
     states = rng.integers(-16256, 16257, (2, 3, 5, 4)).astype(np.int16)
     inputs = rng.integers(-127, 128, (2, 3, 5, 20)).astype(np.int8)
@@ -161,7 +141,7 @@ def test_any_number_of_leading_axes_and_no_change_of_the_arguments() -> None:
 
 
 def test_no_cells_are_no_work() -> None:
-    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    model = random_network(Dimensions(4, 6, 6), 30)
     none = native.update_cells(model, np.zeros((0, 4), np.int16), np.zeros((0, 20), np.int8))
     assert none.shape == (0, 4)
 
@@ -179,7 +159,7 @@ def test_no_cells_are_no_work() -> None:
 def test_arrays_that_do_not_fit_the_model_are_refused(
     states: NDArray[np.int16], inputs: NDArray[np.int8]
 ) -> None:
-    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    model = random_network(Dimensions(4, 6, 6), 30)
     with pytest.raises(ValueError, match="need"):
         native.update_cells(model, states, inputs)
 
@@ -192,6 +172,6 @@ def test_a_missing_or_damaged_library_names_the_remedy(
     if content is not None:
         library.write_bytes(content)
     monkeypatch.setattr(native, "LIBRARY", library)
-    model = random_model(Dimensions(4, 6, 6), 30, seed=1)
+    model = random_network(Dimensions(4, 6, 6), 30)
     with pytest.raises(BuildError, match=f"{library}.*make setup"):
         native.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8))

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from slow_life import SlowRun
-from test_native import random_model, reference
+from test_native import reference
 
+from networks import random_network
 from tilenca.drawings import Drawings
 from tilenca.engines import ExactEngine, FastEngine
 from tilenca.modelfile import Dimensions, Model
@@ -21,7 +22,7 @@ CHANNELS = 6
 
 def restless_model() -> Model:
     """A network that never comes to rest: each state swings around zero, driven by what the neighbours do."""
-    random = random_model(Dimensions(CHANNELS, 4 * CHANNELS, 4 * CHANNELS), 40, seed=5)
+    random = random_network(Dimensions(CHANNELS, 4 * CHANNELS, 4 * CHANNELS), 40, seed=5)
     integer = {name: array.copy() for name, array in random.integer.items()}
     swing = np.arange(2 * CHANNELS)  # the units that hold the own message's parts above and below zero
     own, sign = swing // 2, 1 - 2 * (swing % 2)

@@ -3,12 +3,13 @@
 
 #include <stdint.h>
 
+#include "core/link.h" // kMaxPeriodMs
+
 namespace tilenca {
 
 constexpr uint8_t kSettingsSize = 12;
 constexpr uint8_t kSettingsVersion = 2;
 constexpr uint16_t kMinPeriodMs = 10;
-constexpr uint16_t kMaxPeriodMs = 10000;
 
 struct Settings {
     uint8_t tile_id;    // 0: not set

@@ -21,10 +21,11 @@ uint32_t firmware_id();
 void watchdog_begin();
 void watchdog_feed();
 
-// Looks at a few bytes of the stack's room; call it in every turn of the main loop.
-void stack_watch();
+// Looks at a few bytes of the stack's room; call it in every turn of the main loop. True when it has seen
+// all.
+bool stack_watch();
 
-// Bytes of it that were never used, as far as seen.
+// Bytes of it that were never used, as far as seen the last time that it has seen all.
 uint16_t stack_unused();
 
 } // namespace board

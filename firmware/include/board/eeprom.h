@@ -1,4 +1,5 @@
-// A few bytes at the beginning of EEPROM. Writing takes 3.4 ms a byte, during which the tile goes on.
+// A few bytes at the beginning of EEPROM, kept twice. Writing takes 3.4 ms a byte, during which the tile goes
+// on; whenever the power fails, one of both is whole.
 #pragma once
 
 #include <stdint.h>
@@ -6,13 +7,17 @@
 namespace tilenca {
 namespace board {
 
-// Copies bytes from address 0; not while eeprom_writing().
-void eeprom_read(uint8_t* bytes, uint8_t size);
+enum class Kept : uint8_t { First, Second };
 
-// Begins to write bytes to address 0; they must live until that is done.
+// Copies the bytes from address 0, or the second ones, which lie behind the first; not while
+// eeprom_writing().
+void eeprom_read(Kept which, uint8_t* bytes, uint8_t size);
+
+// Begins to write bytes, the second ones first; they must live until that is done.
 void eeprom_write(const uint8_t* bytes, uint8_t size);
 
-// Goes on writing if the chip is ready for it, without waiting; false when all is done.
+// Goes on writing if the chip is ready for it, without waiting; false when all is done. True at first if a
+// reset came while a byte was being written, which it does not stop.
 bool eeprom_writing();
 
 } // namespace board

@@ -24,9 +24,6 @@ void south_begin();
 // Never inlined: in a larger function its state would not find registers, at twice the cycles.
 bool south_read(uint8_t* byte) __attribute__((noinline));
 
-// Edges lost since the start, for want of room; said a little late.
-uint16_t south_overruns();
-
 // Starts sending a frame of at most kMaxFrame bytes; only when south_idle().
 void south_write(const uint8_t* bytes, uint8_t size);
 

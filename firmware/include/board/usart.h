@@ -13,9 +13,6 @@ void usart_begin(uint8_t number, uint32_t baud);
 // The next byte received, if any.
 bool usart_read(uint8_t number, uint8_t* byte);
 
-// Bytes received and lost since the start, because nobody took those before them; said a little late.
-uint16_t usart_overruns(uint8_t number);
-
 // Queues all of the bytes or, if there is no room for all, none.
 bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 
@@ -25,7 +22,8 @@ uint8_t usart_room(uint8_t number);
 // Whether nothing is queued; up to two bytes may still be leaving.
 bool usart_idle(uint8_t number);
 
-// How many bytes were lost because they were not read in time; stops at 65,535.
+// How many bytes were lost because those before them were not read in time; said a little late. Stops at
+// 65,535.
 uint16_t usart_overruns(uint8_t number);
 
 } // namespace board

@@ -46,8 +46,10 @@ class FrameDecoder {
     const int8_t* messages() const { return reinterpret_cast<const int8_t*>(bytes_ + 1 + kHeaderSize); }
 
   private:
+    Result end_of_frame() __attribute__((noinline)); // most bytes have little to do with it
     bool decode();
     bool undo_cobs();
+    uint8_t whole_size() const { return 1 + kHeaderSize + channels_ + kCrcSize; } // less the delimiter
 
     uint8_t channels_;
     uint8_t size_ = 0; // bytes since the last delimiter; stops one beyond what fits

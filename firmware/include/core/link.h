@@ -10,6 +10,7 @@ namespace tilenca {
 
 constexpr uint8_t kSilentPeriods = 4;
 constexpr uint8_t kSilentExtraMs = 20;
+constexpr uint16_t kMaxPeriodMs = 10000; // no tile is slower
 
 constexpr uint32_t silence_ms(uint16_t period_ms) {
     return static_cast<uint32_t>(period_ms) * kSilentPeriods + kSilentExtraMs;
@@ -26,10 +27,11 @@ struct LinkCounters {
 
 class Link {
   public:
-    // `timeout_ms`: a neighbour whose last good frame is older is silent.
-    Link(uint16_t model_id, uint8_t channels, uint32_t timeout_ms);
+    // `period_ms`: the tile's own. A neighbour is silent when its last good frame is older than silence_ms()
+    // of this or of its own period, whichever is longer. Its own shows in its frames.
+    Link(uint16_t model_id, uint8_t channels, uint16_t period_ms);
 
-    void set_timeout(uint32_t timeout_ms) { timeout_ms_ = timeout_ms; }
+    void set_period(uint16_t period_ms) { period_ms_ = period_ms; }
 
     // Takes the next byte from the line.
     void receive(uint8_t byte, uint32_t now_ms);
@@ -38,18 +40,18 @@ class Link {
     void tick(uint32_t now_ms);
 
     // Whether the neighbour spoke lately and runs the same model.
-    bool alive() const { return alive_; }
+    bool alive() const { return who_ == Who::Neighbour; }
 
     // Its last message, `channels` values, or nullptr while not alive. Valid until the next receive() or
     // tick().
-    const int8_t* message() const { return alive_ ? message_ : nullptr; }
+    const int8_t* message() const { return alive() ? message_ : nullptr; }
 
     // Whether somebody speaks who runs another model.
-    bool foreign() const { return foreign_; }
+    bool foreign() const { return who_ == Who::Stranger; }
 
     // Writes the next frame to the neighbour (at most kMaxFrame bytes), from this side of the tile with this
     // id, and counts it as sent.
-    uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire);
+    uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire) __attribute__((noinline));
 
     // Whether a good frame ever came, when the last one did, and whence: the neighbour's id and its side.
     bool ever_received() const { return counters_.received != 0; }
@@ -60,21 +62,26 @@ class Link {
     const LinkCounters& counters() const { return counters_; }
 
   private:
+    enum class Who : uint8_t { NobodyYet, Silence, Neighbour, Stranger };
+
+    // Never inlined, as send(): the loop that takes in single bytes then finds registers for what it needs.
+    void frame_ended(bool good, uint32_t now_ms) __attribute__((noinline));
     void accept(uint32_t now_ms);
+    void learn_pace(uint32_t now_ms);
 
     uint16_t model_id_;
     uint8_t channels_;
-    uint32_t timeout_ms_;
+    uint16_t period_ms_;
+    uint16_t pace_ms_ = 0; // the longest time from frame to frame lately
     FrameDecoder decoder_;
     LinkCounters counters_;
-    bool alive_ = false;
-    bool foreign_ = false;
+    Who who_ = Who::NobodyYet; // speaks there
     uint8_t neighbour_ = 0;
     Side neighbour_side_ = Side::North;
-    uint8_t sequence_in_ = 0;  // of the last good frame
+    uint8_t sequence_in_ = 0;  // of the last frame heard, whoever sent it
     uint8_t sequence_out_ = 0; // of the next frame to send
-    uint32_t last_ms_ = 0;
-    uint32_t last_foreign_ms_ = 0;
+    uint32_t heard_ms_ = 0;    // that frame
+    uint32_t last_ms_ = 0;     // the last good one
     int8_t message_[kMaxChannels] = {};
 };
 

@@ -5,7 +5,7 @@ namespace tilenca {
 namespace {
 
 Link make_link(const Model& model, const Settings& settings) {
-    return Link(model.id, model.network.channels(), silence_ms(settings.period_ms));
+    return Link(model.id, model.network.channels(), settings.period_ms);
 }
 
 } // namespace
@@ -29,7 +29,7 @@ void Tile::apply(const Settings& settings) {
     due_ms_ = period_ended_ms() + settings.period_ms;
     settings_ = settings;
     for (Link& link : links_) {
-        link.set_timeout(silence_ms(settings.period_ms));
+        link.set_period(settings.period_ms);
     }
 }
 
@@ -38,9 +38,6 @@ void Tile::receive(Side side, uint8_t byte, uint32_t now_ms) {
 }
 
 bool Tile::tick(uint32_t now_ms) {
-    for (Link& link : links_) {
-        link.tick(now_ms);
-    }
     if (cell_.updating()) {
         if (!cell_.update_slice()) {
             return false;
@@ -49,6 +46,9 @@ bool Tile::tick(uint32_t now_ms) {
         shown_ = cell_.best_class(model_.classes);
         tell();
         return true;
+    }
+    for (Link& link : links_) {
+        link.tick(now_ms);
     }
     if (!period_ends(now_ms)) {
         return false;

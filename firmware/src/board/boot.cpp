@@ -142,15 +142,16 @@ uint16_t unused = 0xFFFF;
 
 } // namespace
 
-void stack_watch() {
+bool stack_watch() {
     for (uint8_t i = 0; i < kLookedAtPerTurn; ++i) {
         if (*looking_at != kPaint) {
             unused = static_cast<uint16_t>(looking_at - &__heap_start);
             looking_at = &__heap_start;
-            return;
+            return true;
         }
         ++looking_at;
     }
+    return false;
 }
 
 uint16_t stack_unused() {

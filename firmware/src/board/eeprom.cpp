@@ -10,7 +10,7 @@ namespace {
 
 const uint8_t* to_write = nullptr;
 uint8_t write_size = 0;
-uint8_t write_at = 0; // next address
+uint8_t written = 0; // how many of twice as many
 
 uint8_t read_byte(uint8_t address) {
     EEAR = address;
@@ -29,26 +29,30 @@ void start_byte(uint8_t byte) {
 
 } // namespace
 
-void eeprom_read(uint8_t* bytes, uint8_t size) {
-    for (uint8_t address = 0; address < size; ++address) {
-        bytes[address] = read_byte(address);
+void eeprom_read(Kept which, uint8_t* bytes, uint8_t size) {
+    const uint8_t first = which == Kept::First ? 0 : size;
+    for (uint8_t i = 0; i < size; ++i) {
+        bytes[i] = read_byte(first + i);
     }
 }
 
 void eeprom_write(const uint8_t* bytes, uint8_t size) {
     to_write = bytes;
     write_size = size;
-    write_at = 0;
+    written = 0;
 }
 
 bool eeprom_writing() {
     if (EECR & 1 << EEPE) {
         return true;
     }
-    while (write_at < write_size) {
-        const uint8_t at = write_at++;
-        if (read_byte(at) != to_write[at]) {
-            start_byte(to_write[at]);
+    while (written < 2 * write_size) {
+        const bool second = written < write_size;
+        const uint8_t byte = to_write[second ? written : written - write_size];
+        const uint8_t address = second ? write_size + written : written - write_size;
+        ++written;
+        if (read_byte(address) != byte) {
+            start_byte(byte);
             return true;
         }
     }

@@ -2,8 +2,8 @@
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
-#include <util/atomic.h>
 
+#include "board/chip.h"
 #include "board/gpio.h"
 #include "board/ring.h"
 #include "board/scratch.h"
@@ -44,15 +44,6 @@ uint16_t overruns = 0;
 TILENCA_PAGE volatile uint8_t toggles[kMaxToggleBytes] __attribute__((aligned(128)));
 static_assert(kMaxToggleBytes <= 128, "one index reaches all of them");
 volatile uint8_t toggles_at = 0; // the low byte of the next one's address
-
-// The 16-bit read goes through a register that the interrupt uses too.
-uint16_t timer5_count() {
-    uint16_t count;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        count = TCNT5;
-    }
-    return count;
-}
 
 bool listening() {
     return PCICR & 1 << PCIE2;
@@ -132,7 +123,7 @@ void south_begin() {
     TCCR5A = 0;
     TCCR5B = 1 << CS51;
     PCMSK2 = mask_of(kSouthRx);
-    listen(timer5_count());
+    listen(stamp());
 
     // Fast PWM with ICR1 as top (mode 14), no prescaler. The mode comes first: the chip ignores writes to
     // ICR1 in a mode that does not use it as top (datasheet, "Input Capture Register").
@@ -146,7 +137,7 @@ void south_begin() {
 
 bool south_read(uint8_t* byte) {
     // `now` before the ring: an edge that comes in between is then taken before its time, which does no harm.
-    const uint16_t now = timer5_count();
+    const uint16_t now = stamp();
     if (!listening() && edges_waiting() == 0) {
         if (static_cast<uint16_t>(now - rests_since) >= kRestCounts) {
             listen(now);

@@ -44,7 +44,7 @@ uint8_t encode_frame(FrameHeader header, const int8_t* messages, uint8_t channel
 }
 
 FrameDecoder::Result FrameDecoder::feed(uint8_t byte) {
-    const uint8_t whole = 1 + kHeaderSize + channels_ + kCrcSize;
+    const uint8_t whole = whole_size();
     if (byte != 0) {
         if (size_ < whole) {
             bytes_[size_] = byte;
@@ -54,10 +54,14 @@ FrameDecoder::Result FrameDecoder::feed(uint8_t byte) {
         }
         return Result::Pending;
     }
+    return end_of_frame();
+}
+
+FrameDecoder::Result FrameDecoder::end_of_frame() {
     if (size_ == 0) {
         return Result::Pending;
     }
-    const bool good = size_ == whole && decode();
+    const bool good = size_ == whole_size() && decode();
     size_ = 0;
     return good ? Result::Ready : Result::Corrupt;
 }

@@ -4,52 +4,73 @@
 
 namespace tilenca {
 
-Link::Link(uint16_t model_id, uint8_t channels, uint32_t timeout_ms)
-    : model_id_(model_id), channels_(channels), timeout_ms_(timeout_ms), decoder_(channels) {}
+namespace {
+
+uint16_t longer(uint16_t a, uint16_t b) {
+    return a > b ? a : b;
+}
+
+} // namespace
+
+Link::Link(uint16_t model_id, uint8_t channels, uint16_t period_ms)
+    : model_id_(model_id), channels_(channels), period_ms_(period_ms), decoder_(channels) {}
 
 void Link::receive(uint8_t byte, uint32_t now_ms) {
-    switch (decoder_.feed(byte)) {
-    case FrameDecoder::Result::Pending:
-        break;
-    case FrameDecoder::Result::Corrupt:
-        ++counters_.corrupt;
-        break;
-    case FrameDecoder::Result::Ready:
+    const FrameDecoder::Result result = decoder_.feed(byte);
+    if (result != FrameDecoder::Result::Pending) {
+        frame_ended(result == FrameDecoder::Result::Ready, now_ms);
+    }
+}
+
+void Link::frame_ended(bool good, uint32_t now_ms) {
+    if (good) {
         tick(now_ms); // a frame that ends a silence must not count what was missed during it
         accept(now_ms);
-        break;
+    } else {
+        ++counters_.corrupt;
     }
 }
 
 void Link::accept(uint32_t now_ms) {
     const FrameHeader header = decoder_.header();
+    const uint8_t missed = static_cast<uint8_t>(header.sequence - sequence_in_ - 1);
+    if (missed == 0) {
+        learn_pace(now_ms);
+    }
+    sequence_in_ = header.sequence;
+    heard_ms_ = now_ms;
     if (header.model_id != model_id_) {
         ++counters_.foreign;
-        alive_ = false;
-        foreign_ = true;
-        last_foreign_ms_ = now_ms;
+        who_ = Who::Stranger;
         return;
     }
-    if (alive_) {
-        counters_.lost += static_cast<uint8_t>(header.sequence - sequence_in_ - 1);
+    if (alive()) {
+        counters_.lost += missed;
     }
     ++counters_.received;
-    alive_ = true;
-    foreign_ = false;
+    who_ = Who::Neighbour;
     neighbour_ = header.tile;
     neighbour_side_ = header.side;
-    sequence_in_ = header.sequence;
     last_ms_ = now_ms;
     memcpy(message_, decoder_.messages(), channels_);
 }
 
-void Link::tick(uint32_t now_ms) {
-    // Latches: the ages themselves start again from zero after 49 days.
-    if (alive_ && age_ms(now_ms) > timeout_ms_) {
-        alive_ = false;
+// Two frames that follow one another by their numbers are a period of their sender apart, and no slow tile is
+// taken for one that comes and goes. The longest such time counts; what comes faster lets it fade.
+void Link::learn_pace(uint32_t now_ms) {
+    if (who_ == Who::NobodyYet) {
+        return;
     }
-    if (foreign_ && now_ms - last_foreign_ms_ > timeout_ms_) {
-        foreign_ = false;
+    const uint32_t passed_ms = now_ms - heard_ms_;
+    const uint16_t pace_ms = passed_ms < kMaxPeriodMs ? static_cast<uint16_t>(passed_ms) : kMaxPeriodMs;
+    pace_ms_ -= pace_ms_ / 4;
+    pace_ms_ = longer(pace_ms_, pace_ms);
+}
+
+void Link::tick(uint32_t now_ms) {
+    // A latch: the age itself starts again from zero after 49 days.
+    if ((alive() || foreign()) && now_ms - heard_ms_ > silence_ms(longer(period_ms_, pace_ms_))) {
+        who_ = Who::Silence;
     }
 }
 

@@ -10,12 +10,13 @@ namespace {
 
 constexpr uint16_t kModel = 0xBEEF;
 constexpr uint8_t kChannels = 3;
-constexpr uint32_t kTimeoutMs = silence_ms(100);
+constexpr uint16_t kPeriodMs = 100;
+constexpr uint32_t kTimeoutMs = silence_ms(kPeriodMs);
 
 // A link and the neighbour that speaks to it.
 struct Pair {
-    Link neighbour{kModel, kChannels, kTimeoutMs};
-    Link link{kModel, kChannels, kTimeoutMs};
+    Link neighbour{kModel, kChannels, kPeriodMs};
+    Link link{kModel, kChannels, kPeriodMs};
 
     std::vector<uint8_t> next_frame(int8_t first_message = 1) {
         const int8_t message[kChannels] = {first_message, -2, 3};
@@ -129,7 +130,7 @@ TEST_CASE("a damaged frame is counted and leaves the last message standing") {
 
 TEST_CASE("a neighbour with another model is absent at once, and back at once with the same model") {
     Pair pair;
-    Link foreigner(0x1234, kChannels, kTimeoutMs);
+    Link foreigner(0x1234, kChannels, kPeriodMs);
     pair.deliver(pair.next_frame(), 0);
     REQUIRE(pair.link.alive());
     const int8_t message[kChannels] = {5, 5, 5};
@@ -149,7 +150,7 @@ TEST_CASE("a neighbour with another model is absent at once, and back at once wi
 
 TEST_CASE("a stranger that falls silent is no longer there") {
     Pair pair;
-    Link foreigner(0x1234, kChannels, kTimeoutMs);
+    Link foreigner(0x1234, kChannels, kPeriodMs);
     const int8_t message[kChannels] = {5, 5, 5};
     uint8_t wire[kMaxFrame];
     const uint8_t size = foreigner.send(Side::East, 9, message, wire);
@@ -162,12 +163,72 @@ TEST_CASE("a stranger that falls silent is no longer there") {
     CHECK_FALSE(pair.link.foreign());
 }
 
-TEST_CASE("a new time-out holds from then on") {
+TEST_CASE("a new period holds from then on") {
     Pair pair;
     pair.deliver(pair.next_frame(), 1000);
-    pair.link.set_timeout(50);
-    pair.link.tick(1050);
+    pair.link.set_period(10);
+    pair.link.tick(1060);
     CHECK(pair.link.alive());
-    pair.link.tick(1051);
+    pair.link.tick(1061);
     CHECK_FALSE(pair.link.alive());
+}
+
+namespace {
+
+// Frames so far apart; how often the link was alive when it looked, each millisecond.
+uint32_t alive_ms(Pair& pair, uint32_t* now_ms, uint32_t apart_ms, int frames) {
+    uint32_t alive = 0;
+    for (int i = 0; i < frames; ++i) {
+        pair.deliver(pair.next_frame(), *now_ms);
+        for (uint32_t ms = 0; ms < apart_ms; ++ms) {
+            pair.link.tick(++*now_ms);
+            alive += pair.link.alive();
+        }
+    }
+    return alive;
+}
+
+} // namespace
+
+TEST_CASE("a neighbour slower than the tile is heard all the time from its second frame on") {
+    Pair pair;
+    uint32_t now_ms = 0xFFFFFFF0;
+    CHECK(alive_ms(pair, &now_ms, 2000, 1) == kTimeoutMs);
+    CHECK(alive_ms(pair, &now_ms, 2000, 5) == 5 * 2000);
+    CHECK(alive_ms(pair, &now_ms, 10100, 1) == silence_ms(2000)); // longer than ever
+    CHECK(alive_ms(pair, &now_ms, 10100, 2) == 2 * 10100);
+    CHECK(pair.link.counters().lost == 0);
+}
+
+TEST_CASE("a slow neighbour is silent after four of its periods, and so is one that became faster") {
+    Pair pair;
+    uint32_t now_ms = 0;
+    alive_ms(pair, &now_ms, 2000, 3);
+    CHECK(alive_ms(pair, &now_ms, 60000, 1) == silence_ms(2000));
+    alive_ms(pair, &now_ms, 50, 20);
+    CHECK(alive_ms(pair, &now_ms, 60000, 1) == kTimeoutMs); // the tile's own period
+}
+
+TEST_CASE("frames that got lost do not make a neighbour slow") {
+    Pair pair;
+    uint32_t now_ms = 0;
+    for (int i = 0; i < 20; ++i) {
+        alive_ms(pair, &now_ms, 100, 1);
+        pair.next_frame();
+        now_ms += 100;
+    }
+    CHECK(alive_ms(pair, &now_ms, 60000, 1) == kTimeoutMs);
+}
+
+TEST_CASE("a slow stranger does not come and go either") {
+    Pair pair;
+    Link foreigner(0x1234, kChannels, kPeriodMs);
+    const int8_t message[kChannels] = {5, 5, 5};
+    for (uint32_t now_ms = 0; now_ms < 6000; now_ms += 2000) {
+        uint8_t wire[kMaxFrame];
+        const uint8_t size = foreigner.send(Side::East, 9, message, wire);
+        pair.deliver({wire, wire + size}, now_ms);
+        pair.link.tick(now_ms + kTimeoutMs + 1);
+        CHECK(pair.link.foreign() == (now_ms != 0));
+    }
 }
