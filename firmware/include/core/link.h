@@ -8,7 +8,7 @@
 
 namespace tilenca {
 
-constexpr uint8_t kSilentPeriods = 4;
+constexpr uint8_t kSilentPeriods = 6;
 constexpr uint8_t kSilentExtraMs = 20;
 
 constexpr uint32_t silence_ms(uint16_t period_ms) {
