@@ -20,7 +20,7 @@ from tilenca.model import TileNet, initial_arrays
 from tilenca.modelfile import Dimensions
 from tilenca.recipes import RECIPES
 from tilenca.rollout import live, live_by_autograd, use_threads
-from tilenca.schedule import Schedule, draw_schedule
+from tilenca.schedule import Circumstances, Schedule, draw_schedule
 
 ROUNDS, BATCH, TURNS, SEED = 19, 128, 5, 1
 
@@ -69,14 +69,13 @@ def main() -> int:
     drawings = load_drawings([paths.DEFAULT_SHAPES])
     batch = drawings.batch(random.integers(len(drawings), size=BATCH))
     cells = len(batch.sample)
+    quiet = np.zeros(BATCH, np.bool_)
     schedule: Schedule = draw_schedule(
         RECIPES["paper"],
         batch,
         np.full(BATCH, ROUNDS),
         random,
-        np.zeros(BATCH, np.bool_),
-        np.zeros(cells, np.bool_),
-        np.ones(BATCH, np.bool_),
+        Circumstances(quiet, np.zeros(cells, np.bool_), ~quiet, np.zeros(cells, np.bool_)),
     )
     net = TileNet(Dimensions(), False, initial_arrays(Dimensions(), random, zero_last=False))
     with torch.no_grad():  # small steps, or states grow beyond what two orders of summation agree on

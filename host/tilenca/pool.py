@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tilenca.curriculum import Curriculum
 from tilenca.drawings import Batch
 from tilenca.recipes import Recipe
+from tilenca.schedule import Circumstances
 
 States = NDArray[np.float32]
 FORGETS = 0.1  # weight of the newest result in a drawing's share of failures
@@ -46,22 +47,19 @@ class Taken:
         batch: their cells.
         states: (N, C) float32.
         settled: (B,) bool, left alone for so long that nothing should change any more.
-        late: (B,) bool, tissues to be switched on tile by tile.
-        away: (N,) bool, tiles that are off, and will be back in the seed state when the tissue is next taken.
-        calm: (B,) bool, tissues of the quiet pool.
+        given: what they live through; tiles that are away will be back in the seed state when the tissue is
+            next taken, and those of the quiet pool are calm.
     """
 
     batch: Batch
     states: States
     settled: NDArray[np.bool_]
-    late: NDArray[np.bool_]
-    away: NDArray[np.bool_]
-    calm: NDArray[np.bool_]
+    given: Circumstances
 
     @property
     def asked(self) -> NDArray[np.bool_]:
         """(B,) whether a tissue must be right: it is all there, and was from the beginning."""
-        return ~(self.late | np.logical_or.reduceat(self.away, self.batch.starts))
+        return ~(self.given.late | np.logical_or.reduceat(self.given.away, self.batch.starts))
 
 
 class Pools:
@@ -81,6 +79,8 @@ class Pools:
         groups = np.array(drawings.groups)
         self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
         self._everything = np.arange(len(drawings))
+        self._is_whole = curriculum.whole
+        self._whole = np.flatnonzero(curriculum.whole)
         self._drawn = np.flatnonzero(curriculum.whole & (groups < len(drawings.sources)))
         self._weigh(0.0)
         self.busy = self._empty(recipe.pool)
@@ -127,7 +127,9 @@ class Pools:
             size = self.drawings.sizes[chosen[number]]
             away[batch.starts[number] + random.integers(size, size=random.integers(1, 3))] = True
         calm = np.arange(recipe.batch) >= busy_count
-        return Taken(batch, states[batch.sample, batch.place], settled, late, away, calm)
+        chosen_states = states[batch.sample, batch.place]
+        fresh = (chosen_states == self._seed).all(axis=1)
+        return Taken(batch, chosen_states, settled, Circumstances(late, away, calm, fresh))
 
     def give_back(
         self, taken: Taken, states: States, rounds: NDArray[np.int64], right: NDArray[np.bool_]
@@ -142,7 +144,7 @@ class Pools:
         """
         batch = taken.batch
         padded = np.zeros((len(batch.starts), *self.busy.states.shape[1:]), np.float32)
-        padded[batch.sample, batch.place] = np.where(taken.away[:, None], self._seed, states)
+        padded[batch.sample, batch.place] = np.where(taken.given.away[:, None], self._seed, states)
         busy_count = len(self._busy_taken)
         self.busy.states[self._busy_taken] = padded[:busy_count]
         self.busy.age[self._busy_taken] += rounds[:busy_count]
@@ -191,6 +193,29 @@ class Pools:
         upto = np.cumsum(self._chances[among])
         return int(among[min(np.searchsorted(upto, self.random.random() * upto[-1]), len(among) - 1)])
 
+    def pick_whole(self, count: int) -> NDArray[np.int64]:
+        """(count,) drawings of a class, without damage."""
+        return np.array([self._pick(self._whole) for _ in range(count)])
+
+    def pick_other(self, drawing: int, whole: bool = False) -> int:
+        """Another drawing of its scale, a whole one or any; the same where there is none."""
+        others = self._same_scale[self.drawings.groups[drawing]]
+        others = others[(others != drawing) & (self._is_whole[others] | (not whole))]
+        return self._pick(others) if len(others) else drawing
+
+    def put(self, drawing: int, states: States) -> None:
+        """Into any place of the busy pool, as one that had time.
+
+        Args:
+            drawing: which.
+            states: (its cells, C).
+        """
+        number = int(self.random.integers(len(self.busy.age)))
+        self.busy.drawing[number] = drawing
+        self.busy.states[number] = 0.0
+        self.busy.states[number, : len(states)] = states
+        self.busy.age[number] = HAD_TIME
+
     def reset(self, pool: Pool, number: int) -> None:
         """Puts down any drawing anew, every tile in its seed state."""
         among = self._everything
@@ -206,11 +231,9 @@ class Pools:
     def switch(self, pool: Pool, number: int) -> None:
         """Rebuilds a tissue into another drawing of its scale; tiles that stay keep their state."""
         old = int(pool.drawing[number])
-        others = self._same_scale[self.drawings.groups[old]]
-        others = others[others != old]
-        if not len(others):
+        new = self.pick_other(old)
+        if new == old:
             return self.reset(pool, number)
-        new = self._pick(others)
         stays = self.drawings.overlap(old, new, self.random)
         before = pool.states[number].copy()
         pool.drawing[number] = new

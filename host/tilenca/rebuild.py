@@ -38,7 +38,7 @@ def rebuild(
     first = Simulator(engine, drawings, old, Conditions("clock"), random)
     first.run(before)
     stays = [drawings.overlap(int(a), int(b), random) for a, b in pairs]
-    states = _moved(engine, first, stays)
+    states = moved(engine, first, stays)
     return Simulator(engine, drawings, new, Conditions("clock", boot=0.0), random, states).run(after), new
 
 
@@ -69,7 +69,7 @@ def rebuild_tile_by_tile(
         simulator = Simulator(engine, every, chosen, Conditions("clock", boot=boot), random, state)
         simulator.run(before if step == 0 else BETWEEN)
         following = [walk[min(step + 1, len(walk) - 1)] for walk in walks]
-        state = _moved(engine, simulator, [_stays(a, b) for a, b in zip(now, following, strict=True)])
+        state = moved(engine, simulator, [_stays(a, b) for a, b in zip(now, following, strict=True)])
     new = np.array([pair[1] for pair in pairs])
     return Simulator(engine, drawings, new, Conditions("clock", boot=0.0), random, state).run(after), new
 
@@ -82,7 +82,7 @@ def _pairs(drawings: Drawings) -> Iterator[tuple[int, int]]:
                 yield old, new
 
 
-def _moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]]) -> States:
+def moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]]) -> States:
     """States of the tiles of every run's new drawing, from where `stays` says, or the seed's (-1)."""
     parts = []
     for start, places in zip(before.batch.starts, stays, strict=True):

@@ -32,6 +32,9 @@ class Recipe:
         quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift.
         quiet_batch: how many of them are in each batch.
         quiet_rounds: least and most rounds of an undisturbed life.
+        ahead_every: iterations after which quiet tissues live ahead by the weights that are kept; 0: never.
+        ahead: least and most steps that they then live.
+        trials: tissues that then begin, or are rebuilt, or get a tile back; the pool gets who does not agree.
         quiet_penalty: weight of the squared change of settled states over one iteration.
         fire_rate: least and most share of tiles that update in a round, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
@@ -73,6 +76,9 @@ class Recipe:
     quiet_pool: int = 0
     quiet_batch: int = 0
     quiet_rounds: tuple[int, int] = (200, 4000)
+    ahead_every: int = 0
+    ahead: tuple[int, int] = (50, 3000)
+    trials: int = 200
     quiet_penalty: float = 0.0
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
@@ -114,12 +120,13 @@ FULL = Recipe(
     quiet_pool=128,
     quiet_batch=12,
     quiet_rounds=(200, 20_000),
+    ahead_every=500,
     quiet_penalty=0.05,
     fire_rate=(0.3, 0.9),
     clocks=0.5,
     lossy=0.5,
     max_loss=0.3,
-    longest_loss=5,
+    longest_loss=4,
     unheard=0.5,
     max_unheard=0.7,
     stretch=10.0,
@@ -168,6 +175,9 @@ RECIPES: dict[str, Recipe] = {
         pool=32,
         quiet_pool=8,
         quiet_batch=2,
+        ahead_every=15,
+        ahead=(5, 20),
+        trials=5,
         stretch=1.5,
         check_every=20,
         validation_runs=2,

@@ -73,14 +73,29 @@ class Schedule:
         return fires, self.arrives, neighbours
 
 
+@dataclass(frozen=True)
+class Circumstances:
+    """What B samples of N cells live through.
+
+    Attributes:
+        late: (B,) whose tiles are switched on at any time within their life.
+        away: (N,) tiles that are off all the time.
+        calm: (B,) samples that lose no message.
+        fresh: (N,) tiles in the seed state, from which nobody has heard yet.
+    """
+
+    late: Flags
+    away: Flags
+    calm: Flags
+    fresh: Flags
+
+
 def draw_schedule(
     recipe: Recipe,
     batch: Batch,
     lives: NDArray[np.int64],
     random: np.random.Generator,
-    late: Flags,
-    away: Flags,
-    calm: Flags,
+    given: Circumstances,
 ) -> Schedule:
     """Draws one schedule for a batch: each sample on clocks or not, lossy or not, at its own rates.
 
@@ -89,9 +104,7 @@ def draw_schedule(
         batch: B drawings of N cells in all.
         lives: (B,) rounds that each sample lives; T is the longest.
         random: the only source of chance.
-        late: (B,) whose tiles are switched on at any time within their life.
-        away: (N,) tiles that are off all the time.
-        calm: (B,) samples that lose no message.
+        given: what else the samples live through.
     """
     samples, cells, rounds = len(batch.starts), len(batch.sample), int(lives.max())
     life = lives[batch.sample]
@@ -99,29 +112,44 @@ def draw_schedule(
     rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
     fires = random.random((rounds, cells), dtype=np.float32) < rate.astype(np.float32)
     arrives = np.ones((rounds, cells), dtype=np.bool_)
+    strict = np.zeros(cells, np.bool_)  # whoever has sent nothing that arrived is nobody
     if recipe.clocks > 0:
-        on_clock = np.flatnonzero((random.random(samples) < recipe.clocks)[batch.sample])
+        strict = (random.random(samples) < recipe.clocks)[batch.sample]
+        on_clock = np.flatnonzero(strict)
         fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, rounds, random)
-    boot = np.where(away, life, random.integers(0, life) * late[batch.sample])
-    when, who = np.nonzero(fires & (now < life) & (now >= boot))
-    neighbours = batch.neighbours[who]
-    if boot.any():
-        asleep = np.append(boot, 0)[neighbours] > when[:, None]
-        neighbours[asleep] = cells
-    if recipe.lossy > 0:
-        loss = random.uniform(0, recipe.max_loss, samples) * (random.random(samples) < recipe.lossy) * ~calm
-        lasts = random.integers(1, recipe.longest_loss + 1, samples)
-        fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
-        neighbours[fate < loss[batch.sample][who, None]] = cells
     if recipe.unheard > 0:
         unheard = random.uniform(0, recipe.max_unheard, samples) * (random.random(samples) < recipe.unheard)
-        unheard *= ~calm
+        unheard *= ~given.calm
+        strict |= unheard[batch.sample] > 0
         some = np.flatnonzero(unheard[batch.sample])
         arrives[:, some] &= (
             random.random((rounds, len(some)), dtype=np.float32) >= unheard[batch.sample[some]]
         )
+    boot = np.where(given.away, life, random.integers(0, life) * given.late[batch.sample])
+    fires &= (now < life) & (now >= boot)
+    when, who = np.nonzero(fires)
+    neighbours = batch.neighbours[who]
+    known = np.where(given.fresh & strict, _first_heard(fires, arrives), boot)
+    if known.any():
+        neighbours[np.append(known, 0)[neighbours] > when[:, None]] = cells
+    if recipe.lossy > 0:
+        loss = (
+            random.uniform(0, recipe.max_loss, samples)
+            * (random.random(samples) < recipe.lossy)
+            * ~given.calm
+        )
+        lasts = random.integers(1, recipe.longest_loss + 1, samples)
+        fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
+        neighbours[fate < loss[batch.sample][who, None]] = cells
     reads = np.concatenate((who[:, None], neighbours + cells), axis=1).astype(np.int32)
     return Schedule(np.bincount(when, minlength=rounds), who.astype(np.int32), reads, arrives, batch.starts)
+
+
+def _first_heard(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
+    """(N,) the first round in which neighbours know of a cell; T where they never do."""
+    sent = np.logical_or.accumulate(fires, axis=0)
+    heard = sent & arrives
+    return np.where(heard.any(axis=0), heard.argmax(axis=0) + 1, len(heard))
 
 
 def _clocks(

@@ -137,6 +137,7 @@ class Simulator:
         threads: how many to use, None: one per processor; results do not depend on it.
 
     Attributes:
+        chosen: (R,) the drawing of each run.
         batch: the cells.
         states: (N, C) states of now; not to be written to.
         shown: (N,) int8, the class each tile shows now, -1 for dark.
@@ -160,6 +161,7 @@ class Simulator:
         threads: int | None = None,
     ) -> None:
         self.threads = processors() if threads is None else threads
+        self.chosen = chosen
         self.batch = batch = drawings.batch(chosen)
         self.cells = cells = len(batch.sample)
         self.states = engine.seed(cells) if states is None else np.array(states, order="C")

@@ -14,6 +14,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from tilenca.ahead import live_ahead, put_what_is_stuck
 from tilenca.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.curriculum import Curriculum
 from tilenca.drawings import Batch
@@ -21,6 +22,7 @@ from tilenca.errors import TilencaError
 from tilenca.model import TileNet, initial_arrays
 from tilenca.modelfile import Dimensions
 from tilenca.pool import Pools
+from tilenca.quantise import quantise
 from tilenca.recipes import Recipe
 from tilenca.rollout import live
 from tilenca.schedule import draw_schedule
@@ -137,7 +139,7 @@ class Trainer:
         taken = self.pools.take(self.iteration / recipe.iterations)
         batch = taken.batch
         lives = self._lives(batch)
-        schedule = draw_schedule(recipe, batch, lives, self.random, taken.late, taken.away, taken.calm)
+        schedule = draw_schedule(recipe, batch, lives, self.random, taken.given)
 
         start = torch.from_numpy(taken.states).to(self.device)
         end = live(self.net, start * self.net.units, schedule) / self.net.units
@@ -156,6 +158,8 @@ class Trainer:
         right = _all_right(scores, target, batch)
         self.pools.give_back(taken, end.detach().cpu().numpy(), lives, right)
         self.iteration += 1
+        if recipe.ahead_every and self.iteration % recipe.ahead_every == 0:
+            self._live_ahead()
         report = StepReport(self.iteration, loss.item(), float(right.mean()))
         self._since.append((report.loss, report.agreement))
         if self.iteration % max(1, min(HISTORY_EVERY, recipe.iterations // HISTORY_ROWS)) == 0:
@@ -192,6 +196,13 @@ class Trainer:
         with torch.no_grad():
             for name, value in self.net.named_parameters():
                 self.average[name].lerp_(value, 1 - keep)
+
+    def _live_ahead(self) -> None:
+        kept = self.now()
+        model, _ = quantise(self.config.dimensions, self.config.labels, kept.weights, {})
+        recipe = self.config.recipe
+        live_ahead(model, self.pools.quiet, self.drawings, recipe.ahead, self.random)
+        put_what_is_stuck(model, self.pools, recipe.trials, self.random)
 
     def now(self) -> Trained:
         """What it has come to."""

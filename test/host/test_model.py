@@ -16,7 +16,7 @@ from tilenca.model import LARGEST, STEPS, TileNet, initial_arrays, perceive, per
 from tilenca.modelfile import Dimensions
 from tilenca.recipes import RECIPES
 from tilenca.rollout import live, live_by_autograd, use_threads
-from tilenca.schedule import draw_schedule
+from tilenca.schedule import Circumstances, draw_schedule
 
 FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "digits-7x6.toml")]
 
@@ -26,12 +26,11 @@ def drawings() -> Drawings:
     return load_drawings(FILES, 20)
 
 
-def nobody(batch: Batch) -> NDArray[np.bool_]:
-    return np.zeros(len(batch.sample), np.bool_)
-
-
-def rough(batch: Batch) -> NDArray[np.bool_]:
-    return np.zeros(len(batch.starts), np.bool_)
+def usual(batch: Batch, **given: NDArray[np.bool_]) -> Circumstances:
+    """All tiles on, running and known, but for what is given."""
+    per_sample, per_cell = (np.zeros(len(what), np.bool_) for what in (batch.starts, batch.sample))
+    nothing = {"late": per_sample, "away": per_cell, "calm": per_sample, "fresh": per_cell}
+    return Circumstances(**(nothing | given))
 
 
 def test_perceiving_real_cells_equals_a_convolution_over_the_whole_grid(drawings: Drawings) -> None:
@@ -76,9 +75,12 @@ def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawing
         batch,
         lives,
         random,
-        random.random(len(drawings)) < 0.5,
-        random.random(len(batch.sample)) < 0.1,
-        rough(batch),
+        usual(
+            batch,
+            late=random.random(len(drawings)) < 0.5,
+            away=random.random(len(batch.sample)) < 0.1,
+            fresh=random.random(len(batch.sample)) < 0.3,
+        ),
     )
     pull = torch.from_numpy(random.normal(size=start.shape).astype(np.float32))
     ends, gradients = [], []
@@ -115,15 +117,33 @@ def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latenc
         batch,
         np.array([41]),
         np.random.default_rng(3),
-        np.array([False]),
-        nobody(batch),
-        rough(batch),
+        usual(batch),
     )
     fired, arrived, _ = schedule.by_cell()
     for cell in range(len(batch.sample)):
         fires, arrives = (np.flatnonzero(what[:, cell]) for what in (fired, arrived))
         assert set(np.diff(fires)) == {4}
         assert {(a - fires[fires <= a].max()) for a in arrives if a >= fires[0]} == {2}
+
+
+def test_a_tile_is_nobody_until_its_first_message_has_arrived(drawings: Drawings) -> None:
+    recipe = replace(RECIPES["full"], lossy=0.0, clocks=1.0, unheard=1.0, max_unheard=0.9)
+    batch = drawings.batch(np.array([8]))
+    cells = len(batch.sample)
+    fresh = np.arange(cells) % 2 == 0
+    schedule = draw_schedule(
+        recipe, batch, np.array([60]), np.random.default_rng(3), usual(batch, fresh=fresh)
+    )
+    fires, arrives, neighbours = schedule.by_cell()
+    sent = np.logical_or.accumulate(fires) & arrives
+    known = np.logical_or.accumulate(np.vstack((~fresh, sent[:-1])))
+    before = 0
+    for now, cell in np.argwhere(fires):
+        for side, other in enumerate(batch.neighbours[cell]):
+            if other < cells:
+                assert neighbours[now, cell, side] == (other if known[now, other] else cells)
+                before += not known[now, other]
+    assert before > 10
 
 
 def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
@@ -135,9 +155,7 @@ def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
         batch,
         lives,
         np.random.default_rng(3),
-        np.zeros(len(drawings), bool),
-        nobody(batch),
-        rough(batch),
+        usual(batch),
     )
     fires, _, neighbours = schedule.by_cell()
     lost = fires[:, :, None] & (neighbours != batch.neighbours)
@@ -154,10 +172,7 @@ def test_a_loss_may_last(drawings: Drawings) -> None:
         """How often a neighbour is heard after it was not, or the other way round."""
         some = replace(recipe, longest_loss=longest)
         random = np.random.default_rng(5)
-        schedules = [
-            draw_schedule(some, batch, np.array([60]), random, np.array([False]), nobody(batch), rough(batch))
-            for _ in range(30)
-        ]
+        schedules = [draw_schedule(some, batch, np.array([60]), random, usual(batch)) for _ in range(30)]
         heard = [schedule.by_cell()[2] < len(batch.sample) for schedule in schedules]
         return float(np.mean([np.diff(one.astype(np.int8), axis=0) != 0 for one in heard]))
 
@@ -172,9 +187,7 @@ def test_nobody_updates_before_being_switched_on_or_after_the_end_of_its_life(dr
         batch,
         np.array([20, 30]),
         np.random.default_rng(3),
-        np.array([True, False]),
-        nobody(batch),
-        rough(batch),
+        usual(batch, late=np.array([True, False])),
     )
     fires, _, neighbours = schedule.by_cell()
     late, prompt = fires[:, batch.sample == 0], fires[:, batch.sample == 1]
@@ -226,9 +239,7 @@ def test_any_number_of_threads_and_parts_lives_the_same_life(drawings: Drawings)
     random = np.random.default_rng(11)
     batch = drawings.batch(random.integers(len(drawings), size=9))
     lives = np.full(9, 10)
-    schedule = draw_schedule(
-        RECIPES["full"], batch, lives, random, random.random(9) < 0.3, nobody(batch), rough(batch)
-    )
+    schedule = draw_schedule(RECIPES["full"], batch, lives, random, usual(batch, late=random.random(9) < 0.3))
     whole = schedule.by_cell()
     for wanted in (1, 2, 5, 40):
         parts = list(schedule.parts(wanted))
@@ -246,9 +257,7 @@ def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings)
     random = np.random.default_rng(13)
     net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), random, zero_last=False))
     batch = drawings.batch(random.integers(len(drawings), size=16))
-    schedule = draw_schedule(
-        RECIPES["full"], batch, np.full(16, 12), random, np.zeros(16, np.bool_), nobody(batch), rough(batch)
-    )
+    schedule = draw_schedule(RECIPES["full"], batch, np.full(16, 12), random, usual(batch))
     start = torch.zeros(len(batch.sample), 21)
     start[:, 0] = net.units
     gradients = []

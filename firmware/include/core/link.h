@@ -8,7 +8,7 @@
 
 namespace tilenca {
 
-constexpr uint8_t kSilentPeriods = 4;
+constexpr uint8_t kSilentPeriods = 6;
 constexpr uint8_t kSilentExtraMs = 20;
 constexpr uint16_t kMaxPeriodMs = 10000; // no tile is slower
 
