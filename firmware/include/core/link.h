@@ -9,11 +9,10 @@
 namespace tilenca {
 
 constexpr uint8_t kSilentPeriods = 6;
-constexpr uint8_t kSilentExtraMs = 20;
 constexpr uint16_t kMaxPeriodMs = 10000; // no tile is slower
 
 constexpr uint32_t silence_ms(uint16_t period_ms) {
-    return static_cast<uint32_t>(period_ms) * kSilentPeriods + kSilentExtraMs;
+    return static_cast<uint32_t>(period_ms) * kSilentPeriods;
 }
 
 // docs/PROTOCOL.md section 1 says what each counts.

@@ -294,14 +294,13 @@ TEST_CASE_FIXTURE(Fixture, "neighbours know whom they hear, and from which side"
     CHECK(square[3].link(Side::North).neighbour_side() == Side::South);
 }
 
-TEST_CASE_FIXTURE(Fixture,
-                  "a tile taken away is a zero state after four periods and 20 ms, and may come back") {
+TEST_CASE_FIXTURE(Fixture, "a tile taken away is a zero state after six periods, and may come back") {
     Array square(model, {0, 100, 0, 255}, kSquare);
     square.run_until(1050);
     square.take_away(1);
-    square.run_until(1050 + 370);
+    square.run_until(1050 + 540);
     CHECK(square[0].link(Side::East).alive()); // last spoke at about 1000 ms
-    square.run_until(1050 + 390);
+    square.run_until(1050 + 570);
     CHECK_FALSE(square[0].link(Side::East).alive());
     CHECK(square[0].link(Side::East).message() == nullptr);
     CHECK(square[0].link(Side::South).alive());
