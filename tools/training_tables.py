@@ -1,5 +1,6 @@
-"""Writes the tables of docs/TRAINING.md from the shipped models' metrics: tools/training_tables.py [--check].
+"""Writes the tables of docs/TRAINING.md and the shipped models' cards: tools/training_tables.py [--check].
 
+Both follow from the models' metrics, and from what an update costs a tile, which changes with the firmware.
 Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
 """
 
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca import fit, paths
+from tilenca.card import render_card
 from tilenca.modelfile import load_model
 
 DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
@@ -120,19 +122,31 @@ def rendered(text: str) -> str:
     return text
 
 
+def documents() -> dict[Path, str]:
+    """What every document should say.
+
+    Raises:
+        ValueError: see `rendered`.
+    """
+    cards = {
+        path.parent / "README.md": render_card(load_model(path.parent), metrics_of(path.parent.name))
+        for path in sorted(MODELS.glob("*/model.json"))
+    }
+    return {DOCUMENT: rendered(DOCUMENT.read_text(encoding="utf-8"))} | cards
+
+
 def main() -> int:
-    """Writes the document; with --check exits 1 where it differs."""
+    """Writes the documents; with --check exits 1 where one differs."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where tables differ")
+    parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where one differs")
     args = parser.parse_args()
-    before = Path(DOCUMENT).read_text(encoding="utf-8")
-    after = rendered(before)
-    if args.check:
-        if before != after:
-            print(f"{DOCUMENT}: tables differ from the models' metrics; run {__file__}", file=sys.stderr)
-        return int(before != after)
-    DOCUMENT.write_text(after, encoding="utf-8")
-    return 0
+    differ = {path: text for path, text in documents().items() if path.read_text(encoding="utf-8") != text}
+    for path, text in differ.items():
+        if args.check:
+            print(f"{path}: differs from what the models' metrics say; run {__file__}", file=sys.stderr)
+        else:
+            path.write_text(text, encoding="utf-8")
+    return int(args.check and bool(differ))
 
 
 if __name__ == "__main__":
