@@ -39,7 +39,8 @@ def live_ahead(
         steps: least and most; the number is drawn evenly on a scale of ratios.
         random: the only source of chance.
     """
-    count = round(math.exp(random.uniform(*map(math.log, steps))))
+    least, most = map(math.log, steps)
+    count = round(math.exp(random.uniform(least, most)))
     batch = drawings.batch(pool.drawing)
     states = np.rint(pool.states[batch.sample, batch.place] * SEED_STATE).clip(-STATE_MAX, STATE_MAX)
     simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states.astype(np.int16))
