@@ -77,16 +77,16 @@ def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Gener
     """Whole drawings that begin, have just been rebuilt, and have just got a tile back."""
     drawings = pools.drawings
     for conditions in BEGINNINGS:
-        yield Simulator(engine, drawings, pools.pick_whole(runs), conditions, random)
+        yield Simulator(engine, drawings, pools.pick_some(runs), conditions, random)
 
-    old = pools.pick_whole(runs)
+    old = pools.pick_some(runs, whole=False)
     new = np.array([pools.pick_other(drawing, whole=True) for drawing in old])
     built = Simulator(engine, drawings, old, Conditions("clock"), random)
     built.run(BEFORE)
     stays = [drawings.overlap(int(a), int(b), random) for a, b in zip(old, new, strict=True)]
     yield Simulator(engine, drawings, new, CLOCKS, random, moved(engine, built, stays))
 
-    chosen = pools.pick_whole(runs)
+    chosen = pools.pick_some(runs)
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
     back = Simulator(engine, drawings, chosen, Conditions("clock"), random, fault=away)
     back.run(BEFORE)

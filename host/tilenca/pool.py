@@ -193,9 +193,10 @@ class Pools:
         upto = np.cumsum(self._chances[among])
         return int(among[min(np.searchsorted(upto, self.random.random() * upto[-1]), len(among) - 1)])
 
-    def pick_whole(self, count: int) -> NDArray[np.int64]:
-        """(count,) drawings of a class, without damage."""
-        return np.array([self._pick(self._whole) for _ in range(count)])
+    def pick_some(self, count: int, whole: bool = True) -> NDArray[np.int64]:
+        """(count,) drawings, whole ones or any."""
+        among = self._whole if whole else self._everything
+        return np.array([self._pick(among) for _ in range(count)])
 
     def pick_other(self, drawing: int, whole: bool = False) -> int:
         """Another drawing of its scale, a whole one or any; the same where there is none."""
