@@ -75,18 +75,28 @@ def describe(info: ListPortInfo) -> Port:
     """What pyserial knows of a port, in our terms."""
     adapter = ADAPTERS.get((info.vid, info.pid))
     if adapter is None:
-        about = info.product or info.description or ""
+        about = _printable(info.product or info.description or "")
         about = "" if about == "n/a" else about
     else:
         about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
     # An empty serial number tells no board from another, nor does a blank one.
-    serial_number = (info.serial_number or "").strip() or None
+    serial_number = _printable((info.serial_number or "").strip()) or None
     return Port(info.device, info.vid, info.pid, serial_number, info.location or None, about)
+
+
+def _printable(text: str) -> str:
+    """What a board says of itself goes to terminals and into files: some say nonsense."""
+    return "".join(character if character.isprintable() else "?" for character in text)
+
+
+def is_mega(port: Port) -> bool:
+    """Whether its USB ids are those of a Mega 2560, or of a chip that its clones have."""
+    return (port.vid, port.pid) in ADAPTERS
 
 
 def megas(infos: Iterable[ListPortInfo]) -> list[Port]:
     """The ports among `infos` that are, or may be, Mega 2560s, in natural order of their names."""
-    found = [describe(info) for info in infos if (info.vid, info.pid) in ADAPTERS]
+    found = filter(is_mega, map(describe, infos))
     return sorted(found, key=lambda port: natural_key(port.name))
 
 
