@@ -88,7 +88,7 @@ class _Bars:
 def display(titles: Mapping[str, str]) -> Iterator[Display]:
     """Shows progress on stderr while the block runs; `titles` say what to call each port."""
     console = Console(stderr=True, highlight=False)
-    if not console.is_terminal:
+    if not console.is_terminal or console.is_dumb_terminal:
         yield _Lines(titles)
         return
     columns = (
