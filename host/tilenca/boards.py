@@ -7,11 +7,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from serial.tools.list_ports import comports
-
 from tilenca.arguments import add_port_argument
 from tilenca.errors import NoDeviceError, UsageError
-from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key
+from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
 from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
 from tilenca.tilesfile import DEFAULT, Place, read_tiles
@@ -114,7 +112,7 @@ def load_places(path: Path | None) -> list[Place]:
 
 def match_ports(patterns: Sequence[str]) -> list[Board]:
     """The boards behind the ports that `--port` names, else all on USB; NoDeviceError if none is there."""
-    return match(find_ports(patterns), [], [describe(info) for info in comports()])
+    return match(find_ports(patterns), [], [describe(info) for info in serial_ports()])
 
 
 def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
@@ -129,7 +127,7 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
         UsageError: the file is wrong.
     """
     places = load_places(path)
-    on_usb = [describe(info) for info in comports()]
+    on_usb = [describe(info) for info in serial_ports()]
     if patterns or not places:
         return Found(match(find_ports(patterns), places, on_usb))
     names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]

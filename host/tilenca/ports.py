@@ -8,6 +8,7 @@ import grp
 import os
 import re
 import stat
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from pathlib import Path
 from serial.tools.list_ports import comports
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca.errors import NoDeviceError
+from tilenca.errors import NoDeviceError, TilencaError
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,9 @@ ADAPTERS: dict[tuple[int, int], Adapter] = {
     (0x0403, 0x6001): Adapter("FTDI FT232R adapter", certain=False),
     (0x0403, 0x6015): Adapter("FTDI FT231X adapter", certain=False),
 }
+
+# pyserial stumbles over a board that is pulled while it is being looked at.
+LOOKS, LOOK_AGAIN_S = 5, 0.1
 
 MAGIC = re.compile(r"[*?[]")
 
@@ -69,6 +73,20 @@ class Port:
 def natural_key(text: str) -> list[tuple[int, str]]:
     """Sort key that puts ttyACM2 before ttyACM10."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
+
+
+def serial_ports() -> list[ListPortInfo]:
+    """All ports of this machine, as pyserial lists them.
+
+    Raises:
+        TilencaError: it cannot, not even after a while.
+    """
+    for _ in range(LOOKS):
+        try:
+            return list(comports())
+        except TypeError:
+            time.sleep(LOOK_AGAIN_S)
+    raise TilencaError("a board on USB does not say what it is; pull its cable and plug it in again")
 
 
 def describe(info: ListPortInfo) -> Port:
@@ -109,7 +127,7 @@ def find_ports(patterns: Sequence[str] = ()) -> list[Port]:
     Raises:
         NoDeviceError: nothing was found.
     """
-    infos = list(comports())
+    infos = serial_ports()
     if not patterns:
         if found := megas(infos):
             return found

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca import boards, ports
+from tilenca import ports
 from tilenca.boards import find_boards, find_fleet, tell_contradiction, tile_numbers
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
@@ -39,8 +39,7 @@ LAB = [
 def lab(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[ListPortInfo]:
     """What is on USB; the test may change the list. No file of tiles but the test's own."""
     infos = list(LAB)
-    for module in (boards, ports):
-        monkeypatch.setattr(module, "comports", lambda: infos)
+    monkeypatch.setattr(ports, "comports", lambda: infos)
     monkeypatch.chdir(tmp_path)
     return infos
 
