@@ -21,6 +21,7 @@ from tilenca.avrdude import Output, Progress, find_avrdude
 from tilenca.cli import main
 from tilenca.errors import TilencaError
 from tilenca.flashmemory import failed_boards, remember
+from tilenca.flashview import ending
 from tilenca.portlock import port_lock
 from tilenca.tilesfile import Place, write_tiles
 
@@ -162,6 +163,14 @@ def test_calls_that_end_at_the_same_moment_forget_nothing(
     (tmp_path / "tilenca" / "failed.json").write_bytes(b"\xff")
     remember({"port:1": False, "port:2": True})
     assert failed_boards() == {"port:1"}
+
+
+def test_on_a_narrow_terminal_boards_are_told_apart_by_the_end_of_their_names() -> None:
+    titles = [f"/tmp/a-long-folder-name-of-a-port/tile-{number} tile {number}" for number in (1, 2)]
+    shown = [ending(title, 20) for title in titles]
+    assert [line[-14:] for line in shown] == ["/tile-1 tile 1", "/tile-2 tile 2"]
+    assert {len(line) for line in shown} == {20}
+    assert ending("ttyACM3", 0) == "ttyACM3"
 
 
 def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> None:
