@@ -10,6 +10,8 @@ import tty
 from types import FrameType
 from typing import Self
 
+from tilenca.interrupts import held_back
+
 # An arrow, another sequence, one that has not come to its end, or a plain character.
 _KEY = re.compile(
     rb"\x1b(?:\[[0-9;]*|O)(?P<arrow>[A-D])|\x1b\[[0-?]*[ -/]*[@-~]|\x1b(?P<partial>\[[0-?]*[ -/]*|O)?\Z"
@@ -66,9 +68,10 @@ class Keyboard:
         return self
 
     def __exit__(self, *about: object) -> None:
-        self._give_back()
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
+        with held_back():
+            self._give_back()
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)
 
     def _take(self) -> None:
         tty.setcbreak(self._descriptor, termios.TCSANOW)

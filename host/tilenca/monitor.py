@@ -18,6 +18,7 @@ from tilenca.errors import NoDeviceError, TilencaError, UsageError
 from tilenca.fleetgrid import Grid
 from tilenca.fleetlive import LiveView
 from tilenca.fleetview import log_line, summary
+from tilenca.interrupts import held_back
 from tilenca.keyboard import Keyboard, is_ours
 from tilenca.portreader import PortReader
 from tilenca.ports import MAGIC
@@ -215,7 +216,8 @@ def _display(
     about = f"replay of {args.replay}" if player else ""
     display = LiveView(fleet, grid, console, args.table, about)
     if player and sys.stdin and is_ours(sys.stdin.fileno()):
-        player.wait = stack.enter_context(Keyboard(sys.stdin.fileno())).wait
+        with held_back():  # whoever takes the terminal is sure to give it back
+            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno())).wait
         if args.replay.is_file():  # what comes through a pipe comes once
             player.begin_again = display.begin_again
         display.footer = lambda: f"{player.status}; {KEYS}"
