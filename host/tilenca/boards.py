@@ -7,11 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from serial.tools.list_ports import comports
-
 from tilenca.arguments import add_port_argument
 from tilenca.errors import NoDeviceError, UsageError
-from tilenca.ports import Port, describe, find_ports, is_device, natural_key
+from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
+from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
 from tilenca.tilesfile import DEFAULT, Place, read_tiles
 
@@ -88,7 +87,8 @@ def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]
         mine = [place for place in places if is_board(port, place.board)]
         # A serial number that two boards have by now says nothing.
         mine = [p for p in mine if p.board.partition(":")[0] != "serial" or port.serial_number not in shared]
-        boards.append(Board(port, board_name(port, shared), mine[0] if mine else None))
+        name = mine[0].board if mine else board_name(port, shared)
+        boards.append(Board(port, name, mine[0] if mine else None))
     return boards
 
 
@@ -112,7 +112,7 @@ def load_places(path: Path | None) -> list[Place]:
 
 def match_ports(patterns: Sequence[str]) -> list[Board]:
     """The boards behind the ports that `--port` names, else all on USB; NoDeviceError if none is there."""
-    return match(find_ports(patterns), [], [describe(info) for info in comports()])
+    return match(find_ports(patterns), [], [describe(info) for info in serial_ports()])
 
 
 def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
@@ -127,19 +127,15 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
         UsageError: the file is wrong.
     """
     places = load_places(path)
-    on_usb = [describe(info) for info in comports()]
+    on_usb = [describe(info) for info in serial_ports()]
     if patterns or not places:
         return Found(match(find_ports(patterns), places, on_usb))
     names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]
-    listed = [Port(name) for name in names if is_device(name)]
-    try:
-        listed += find_ports()
-    except NoDeviceError:
-        if not listed:
-            raise
+    devices = {os.path.realpath(name): Port(name) for name in names if is_device(name)}
     # What the file lists by its USB socket may be a board whose ids are not known here.
-    known = {port.name for port in listed}
-    listed += [p for p in on_usb if p.name not in known and any(is_board(p, place.board) for place in places)]
+    listed = [p for p in on_usb if is_mega(p) or any(is_board(p, place.board) for place in places)]
+    devices |= {os.path.realpath(port.name): port for port in listed}
+    listed = list(devices.values()) or find_ports()
     boards = match(sorted(listed, key=lambda port: natural_key(port.name)), places, on_usb)
     known_places = {board.place for board in boards}
     missing = [place for place in places if place not in known_places]
@@ -161,6 +157,15 @@ def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
             "`tilenca devices` lists what is on USB"
         )
     return found
+
+
+def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | None) -> None:
+    """Says if a tile calls itself otherwise than the file of tiles does."""
+    if listed is not None and hello and hello.tile != listed:
+        warn(
+            f"{port}: tile {listed} by the file of tiles, but it calls itself {hello.tile}; "
+            "`tilenca devices --learn` writes the file anew, `tilenca set id` renames the tile"
+        )
 
 
 def tile_numbers(text: str) -> set[int]:

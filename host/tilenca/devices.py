@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from tilenca.asking import Answer, ask_all
-from tilenca.boards import Board, Found, add_fleet_arguments, find_boards, match_ports
+from tilenca.boards import Board, Found, add_fleet_arguments, find_boards, match_ports, tell_contradiction
 from tilenca.errors import UsageError
 from tilenca.learning import learn
 from tilenca.ports import natural_key
@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--learn",
         action="store_true",
-        help="find out which tile is where, and write that to the file of tiles",
+        help="find out which tile is where, and write the file of tiles anew with that",
     )
     parser.add_argument(
         "--blink", action="store_true", help="with --learn: you say where each blinking tile lies"
@@ -64,6 +64,8 @@ def run(args: argparse.Namespace) -> int:
         present = [replace(board, place=places.get(board.name)) for board in present]
     elif args.ask:
         answers = ask_all([board.port.name for board in present], "tilenca devices")
+        for board in present:
+            tell_contradiction(board.port.name, board.tile, answers[board.port.name].hello)
         left_out = sum(answer.hello is None for answer in answers.values())
     if args.json:
         print(json.dumps(document(present, found, answers), indent=2))

@@ -8,6 +8,7 @@ import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -151,16 +152,23 @@ def load_drawings(
     Raises:
         UsageError: a file is not valid, two files contradict each other, or a label is not among `labels`.
     """
+    return _join(paths, (load_task(path, max_classes) for path in paths), max_classes, labels)
+
+
+def _join(
+    paths: Sequence[Path], tasks: Iterable[Task], max_classes: int | None, labels: Sequence[str] | None
+) -> Drawings:
+    """`load_drawings` with what is in the files; each task is taken when its file's turn has come."""
     shapes: list[Shape] = []
     groups: list[int] = []
     found: dict[str, None] = {}
+    coming = iter(tasks)
     for group, path in enumerate(paths):
         if any(path.name == other.name and path.resolve() != other.resolve() for other in paths[:group]):
             raise UsageError(
                 f"{path}: another file has that name too, and tables name files by it; rename one"
             )
-        task = load_task(path, max_classes)
-        for shape in task.shapes:
+        for shape in next(coming).shapes:
             twin = next((n for n, other in enumerate(shapes) if other.rows == shape.rows), None)
             if twin is not None and shapes[twin].label != shape.label:
                 raise UsageError(
@@ -211,8 +219,9 @@ def load_training_task(
     _refuse_collisions(paths[0], drawn, sizes)
     more = tuple(path for path in sizes.drawn if path.resolve() not in [given.resolve() for given in paths])
     if stretch > 1:
-        return load_drawings([*paths, *more], max_classes, labels), replace(sizes, drawn=())
-    return load_drawings(paths, max_classes, labels), replace(sizes, drawn=more)
+        paths, more = [*paths, *more], ()
+    tasks = chain([drawn], (load_task(path, max_classes) for path in paths[1:]))
+    return _join(paths, tasks, max_classes, labels), replace(sizes, drawn=more)
 
 
 def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:

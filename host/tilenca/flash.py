@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.arguments import count, positive
-from tilenca.asking import PATIENCE_S, Answer, ask_all
-from tilenca.avrdude import Progress, find_avrdude
-from tilenca.boards import Board, add_fleet_arguments, find_fleet, tile_numbers
+from tilenca.asking import PATIENCE_S, SILENT, Answer, ask_all
+from tilenca.avrdude import Avrdude, Progress, find_avrdude
+from tilenca.boards import Board, Found, add_fleet_arguments, find_fleet, tile_numbers
 from tilenca.building import FIRMWARE_HEX, build
 from tilenca.errors import NoDeviceError
 from tilenca.flashmemory import failed_boards, remember
@@ -36,7 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-build", action="store_true", help="write the image that is there")
     parser.add_argument("--force", action="store_true", help="write it to tiles that already run it, too")
     parser.add_argument("--only", metavar="TILES", help="only these tiles, such as 3,7,9-12")
-    parser.add_argument("--failed", action="store_true", help="only boards that failed when last flashed")
+    parser.add_argument(
+        "--failed", action="store_true", help="only boards that failed or were missing when last flashed"
+    )
     parser.add_argument(
         "--timeout",
         type=positive,
@@ -76,6 +78,7 @@ class _Flashing:
     """One call: the image, the boards' rows, and whether Ctrl-C ended it."""
 
     args: argparse.Namespace
+    tool: Avrdude
     image: Image
     rows: dict[str, Row]
     display: Display
@@ -117,7 +120,7 @@ class _Flashing:
                 self.display.done(name, news.result, news.error)
 
         jobs = self.args.jobs or max(len(names), 1)
-        for outcome in program_all(find_avrdude(), self.image.path, names, jobs, self.args.timeout, report):
+        for outcome in program_all(self.tool, self.image.path, names, jobs, self.args.timeout, report):
             row = self.rows[outcome.port]
             row.end(outcome.result, outcome.error)
             row.seconds, row.attempts = outcome.seconds, outcome.attempts
@@ -141,7 +144,9 @@ class _Flashing:
             )
         if self.args.hex:
             return "flashed", None  # any program may be written; not all of them can say what they are
-        return "failed", f"it was written and read back, but the tile {answer.problem}; press its reset"
+        if answer.problem == SILENT:
+            return "failed", f"it was written and read back, but the tile {SILENT}; press its reset"
+        return "failed", f"it was written and read back, but cannot be asked what it runs: {answer.problem}"
 
     def _end(self, name: str, result: str, error: str | None = None) -> None:
         self.rows[name].end(result, error)
@@ -150,59 +155,68 @@ class _Flashing:
 
 def run(args: argparse.Namespace) -> int:
     """Finds the boards, builds, checks the image, programs all of them; see `tilenca flash --help`."""
+    wanted = None if args.only is None else tile_numbers(args.only)
     found = find_fleet(args.port, args.tiles)
     found.tell_others()
-    tool = find_avrdude()
-    if not (args.hex or args.no_build):
-        build()
-    image = check_image(args.hex or FIRMWARE_HEX)
-    boards, missing = _chosen(args, found.boards, found.missing)
-    if not boards:
-        warn("nothing to do: no board of those failed when it was last flashed")
-    rows = {board.port.name: Row(board.port.name, tile=board.tile, board=board.name) for board in boards}
-    titles = {b.port.name: b.port.name + (f" tile {b.tile}" if b.tile else "") for b in boards}
+    boards, missing = _failed(found) if args.failed else (found.boards, found.missing)
+    rows: dict[str, Row] = {}
+    interrupted = False
     if boards:
-        number = f"{len(boards)} board{'s' * (len(boards) != 1)}"
-        warn(f"image {image.path}: {image.size} bytes, firmware id {image.firmware_id:08X}")
-        warn(f"writing it to {number} with {tool.program}")
-    with display(titles) as shown:
-        flashing = _Flashing(args, image, rows, shown)
-        flashing.run()
-    remember({row.board: row.result in GOOD for row in rows.values()})
+        tool, image = find_avrdude(), _image(args)
+        if wanted is not None:
+            boards = _only(wanted, boards)
+            if not (boards or args.failed):
+                raise NoDeviceError(
+                    f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
+                    "`tilenca devices --learn` finds out which tile is which"
+                )
+        rows = {board.port.name: Row(board.port.name, tile=board.tile, board=board.name) for board in boards}
+        interrupted = bool(rows) and _program(args, tool, image, rows)
     absent = [
         Row(None, "missing", 0.0, "not connected; connect it and flash again", place.tile, place.board)
         for place in missing
+        if wanted is None or place.tile in wanted
     ]
-    return _tell([*rows.values(), *absent], args.json, flashing.interrupted)
+    everything = [*rows.values(), *absent]
+    if not everything:
+        warn("nothing to do: no board of those failed or was missing when last flashed")
+    remember({row.board: row.result in GOOD for row in everything})
+    return _tell(everything, args.json, interrupted)
 
 
-def _chosen(
-    args: argparse.Namespace, boards: list[Board], missing: list[Place]
-) -> tuple[list[Board], list[Place]]:
-    """What `--only` and `--failed` leave of the fleet.
+def _failed(found: Found) -> tuple[list[Board], list[Place]]:
+    """What `--failed` leaves of the fleet."""
+    names = failed_boards()
+    boards = [board for board in found.boards if board.name in names]
+    return boards, [place for place in found.missing if place.board in names]
 
-    Raises:
-        UsageError: `--only` is no list of tiles.
-        NoDeviceError: none of those tiles is there.
-    """
-    if args.failed:
-        names = failed_boards()
-        boards = [board for board in boards if board.name in names]
-        missing = [place for place in missing if place.board in names]
-    if args.only is not None:
-        wanted = tile_numbers(args.only)
-        ids = {board.port.name: board.tile for board in boards}
-        unknown = [name for name, tile in ids.items() if tile is None]
-        for name, answer in ask_all(unknown, USER).items():
-            ids[name] = answer.hello.tile if answer.hello else None
-        boards = [board for board in boards if ids[board.port.name] in wanted]
-        missing = [place for place in missing if place.tile in wanted]
-        if not boards and not args.failed:
-            raise NoDeviceError(
-                f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
-                "`tilenca devices --learn` finds out which tile is which"
-            )
-    return boards, missing
+
+def _only(wanted: set[int], boards: list[Board]) -> list[Board]:
+    """What `--only` leaves of the boards; those are asked whose ids no file says."""
+    ids = {board.port.name: board.tile for board in boards}
+    unknown = [name for name, tile in ids.items() if tile is None]
+    for name, answer in ask_all(unknown, USER).items():
+        ids[name] = answer.hello.tile if answer.hello else None
+    return [board for board in boards if ids[board.port.name] in wanted]
+
+
+def _image(args: argparse.Namespace) -> Image:
+    """What is to be written, built if need be, and checked before a board is touched."""
+    if not (args.hex or args.no_build):
+        build()
+    return check_image(args.hex or FIRMWARE_HEX)
+
+
+def _program(args: argparse.Namespace, tool: Avrdude, image: Image, rows: dict[str, Row]) -> bool:
+    """Programs the boards and fills their rows in; whether it was interrupted."""
+    number = f"{len(rows)} board{'s' * (len(rows) != 1)}"
+    warn(f"image {image.path}: {image.size} bytes, firmware id {image.firmware_id:08X}")
+    warn(f"writing it to {number} with {tool.program}")
+    titles = {name: name + (f" tile {row.tile}" if row.tile else "") for name, row in rows.items()}
+    with display(titles) as shown:
+        flashing = _Flashing(args, tool, image, rows, shown)
+        flashing.run()
+    return flashing.interrupted
 
 
 def _tell(rows: list[Row], as_json: bool, interrupted: bool) -> int:
@@ -223,13 +237,15 @@ def _tell(rows: list[Row], as_json: bool, interrupted: bool) -> int:
         print(table(HEADER, lines))
     if interrupted:
         raise KeyboardInterrupt
+    if not rows:
+        return 0
     results = [row.result for row in rows]
     skipped = f", {results.count('skipped')} ran it already" if "skipped" in results else ""
     warn(f"{results.count('flashed')} of {len(results)} flashed{skipped}")
-    again = [row for row in rows if row.result not in GOOD]
-    if again:
-        warn("to try again those that failed: tilenca flash --failed, with the same ports")
-    return 0 if not again else 1
+    if all(row.result in GOOD for row in rows):
+        return 0
+    warn("to try again those that failed or were missing: tilenca flash --failed, with the same ports")
+    return 1
 
 
 def _document(row: Row) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """What became of each board at its last flashing, for `tilenca flash --failed`."""
 
+import fcntl
 import json
 import os
 from collections.abc import Mapping
@@ -8,7 +9,7 @@ from pathlib import Path
 
 
 def _file() -> Path:
-    """Where programs keep such things for their user."""
+    """Where programs keep such things for their user; RuntimeError if the user has no home."""
     home = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
     return Path(home) / "tilenca" / "failed.json"
 
@@ -16,8 +17,17 @@ def _file() -> Path:
 def failed_boards() -> set[str]:
     """The names of the boards that are still to be flashed; an unreadable file is an empty one."""
     try:
-        document = json.loads(_file().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        with _file().open(encoding="utf-8", errors="replace") as file:
+            fcntl.flock(file, fcntl.LOCK_SH)
+            return _names(file.read())
+    except (OSError, RuntimeError):
+        return set()
+
+
+def _names(text: str) -> set[str]:
+    try:
+        document = json.loads(text)
+    except ValueError:
         return set()
     return {name for name in document if isinstance(name, str)} if isinstance(document, list) else set()
 
@@ -28,7 +38,12 @@ def remember(done: Mapping[str, bool]) -> None:
     Args:
         done: whether each board, by name, runs what it should.
     """
-    failed = (failed_boards() | done.keys()) - {name for name, well in done.items() if well}
-    with suppress(OSError):  # a convenience: no flashing fails for want of it
-        _file().parent.mkdir(parents=True, exist_ok=True)
-        _file().write_text(json.dumps(sorted(failed), indent=1) + "\n", encoding="utf-8")
+    with suppress(OSError, RuntimeError):  # a convenience: no flashing fails for want of it
+        path = _file()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a+", encoding="utf-8", errors="replace") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)  # another call may end at the same moment
+            file.seek(0)
+            failed = (_names(file.read()) | done.keys()) - {name for name, well in done.items() if well}
+            file.truncate(0)
+            file.write(json.dumps(sorted(failed), indent=1) + "\n")

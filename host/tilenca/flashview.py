@@ -21,6 +21,11 @@ SPANS = {
     "confirming": (0.95, 0.0),
 }
 
+# How wide the columns are, gaps included, and from what width of the terminal on there is room for all.
+PHASE, TIME, LEAST_BAR, WIDE_BAR = 14, 8, 8, 30
+NARROW = 90
+LEAST_TITLE = 12
+
 
 class Display(Protocol):
     """Shows how far boards are."""
@@ -84,18 +89,26 @@ class _Bars:
             self._bars.update(self._all, completed=sum(self._shares.values()), phase=about)
 
 
+def ending(title: str, room: int) -> str:
+    """As much of a title as there is room for: its end, which tells one board from another."""
+    room = max(room, LEAST_TITLE)
+    return title if len(title) <= room else "..." + title[3 - room :]
+
+
 @contextmanager
 def display(titles: Mapping[str, str]) -> Iterator[Display]:
     """Shows progress on stderr while the block runs; `titles` say what to call each port."""
     console = Console(stderr=True, highlight=False)
-    if not console.is_terminal:
+    if not console.is_terminal or console.is_dumb_terminal:
         yield _Lines(titles)
         return
-    columns = (
+    narrow = console.width < NARROW
+    columns = [
         TextColumn("{task.description}"),
-        BarColumn(),
-        TimeElapsedColumn(),
+        BarColumn(LEAST_BAR if narrow else WIDE_BAR),
+        *([] if narrow else [TimeElapsedColumn()]),
         TextColumn("{task.fields[phase]}"),
-    )
+    ]
+    room = console.width - (LEAST_BAR + PHASE if narrow else WIDE_BAR + TIME + PHASE)
     with Bars(*columns, console=console) as bars:
-        yield _Bars(bars, titles)
+        yield _Bars(bars, {name: ending(title, room) for name, title in titles.items()})

@@ -2,16 +2,17 @@
 
 import time
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from textwrap import wrap
 
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console, ConsoleOptions, OverflowMethod, RenderResult
 from rich.live import Live
 from rich.segment import Segment
 from rich.text import Text
 
 from tilenca.fleetgrid import Cell, Grid, Position
 from tilenca.fleetnews import News, Reporter
-from tilenca.fleetpicture import full, small
+from tilenca.fleetpicture import draw_fitting
 from tilenca.fleetview import clock_text, live_table
 from tilenca.telemetry import Event, Fleet
 
@@ -25,9 +26,14 @@ class LiveView:
     """Shows the fleet on a terminal; enter `live` while it does."""
 
     def __init__(self, fleet: Fleet, grid: Grid, console: Console, table: bool, about: str = "") -> None:
-        """Will draw the grid, or with `table` one line per port; `about` says what is replayed."""
+        """Will draw the grid, or with `table` one line per port; `about` says what is replayed.
+
+        `footer` may be set, to a function that gives what is to stand below.
+        """
         self._fleet, self._grid, self._table, self._about = fleet, grid, table, about
         self._console = console
+        self._overflow: OverflowMethod = "crop" if console.options.ascii_only else "ellipsis"
+        self.footer: Callable[[], str] = str
         self._reporter = Reporter(fleet)
         self._log: deque[News] = deque(maxlen=LOG_LINES)
         self._counted: deque[tuple[float, int]] = deque(maxlen=2 + round(RATE_S / REDRAW_S))
@@ -43,24 +49,35 @@ class LiveView:
             self._shown_s = time.monotonic()
             self.live.refresh()
 
+    def begin_again(self) -> None:
+        """Forgets all that was shown: it is played from the beginning."""
+        self._fleet.tiles.clear()
+        self._reporter = Reporter(self._fleet)
+        self._log.clear()
+        self._counted.clear()
+
     def lines(self, width: int, height: int) -> list[Text]:
         """The whole picture, no wider and no higher than that."""
         grid = self._grid.cells(self._fleet, self._now_s)
+        footer = [Text(line, style="dim") for line in wrap(self.footer(), width)][: max(height - 1, 0)]
+        height -= len(footer)
         body = self._body(grid, width, height - 1 - LEAST_LOG)
         room = max(height - len(body) - 2, 0)
         log = [self._log_line(news) for news in list(self._log)[-room:]] if room else []
-        lines = [self._head(grid), *body, *log]
+        lines = [self._head(grid), *body, *log][: max(height, 0)] + footer
         for line in lines:
-            line.truncate(width, overflow="ellipsis")
-        return lines[:height]
+            line.truncate(width, overflow=self._overflow)
+        return lines
 
     def _body(self, grid: dict[Position, Cell], width: int, height: int) -> list[Text]:
         if not self._table:
-            for lines in (full(grid, self._console.options.ascii_only), small(grid)):
-                if len(lines) <= height and max((line.cell_len for line in lines), default=0) <= width:
-                    return lines
+            picture = draw_fitting(grid, width, height, self._console.options.ascii_only)
+            if picture is not None:
+                return picture
         options = self._console.options.update(width=width, height=None)
-        rendered = self._console.render_lines(live_table(self._fleet, self._now_s), options, pad=False)
+        rendered = self._console.render_lines(
+            live_table(self._fleet, self._now_s, self._overflow), options, pad=False
+        )
         return [Text.assemble(*((part.text, part.style or "") for part in line)) for line in rendered][
             :height
         ]

@@ -1,6 +1,6 @@
 """The fleet drawn in a terminal: each tile a box in its place, with its digit, step, links and age. Pure."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.text import Text
@@ -11,6 +11,7 @@ from tilenca.linkhealth import WELL
 from tilenca.picture import digit, led_style
 
 INSIDE = 11
+BOX_WIDTH, BOX_HEIGHT, LINE_WIDTH = INSIDE + 2, 5, 10
 STYLES = {Mark.NONE: "dim", Mark.WELL: "green", Mark.FAILING: "bold yellow", Mark.DEAD: "bold red"}
 BOX = "dim"
 TROUBLE = "yellow"
@@ -53,15 +54,32 @@ def age_text(age_s: float | None) -> str:
     return f"{age_s / 60:.0f}m" if age_s < 6000 else f"{min(age_s / 3600, 999):.0f}h"
 
 
+def draw_fitting(
+    grid: Mapping[Position, Cell], width: int, height: int, ascii_only: bool
+) -> list[Text] | None:
+    """The larger of `full` and `small` that fits; None if neither does. Nothing is drawn in vain."""
+    if not grid:
+        return []
+    rows, cols = _extent(row for row, _ in grid), _extent(col for _, col in grid)
+    if len(rows) * BOX_HEIGHT <= height and len(cols) * BOX_WIDTH <= width:
+        return full(grid, ascii_only)
+    return small(grid) if len(rows) <= height and len(cols) * LINE_WIDTH <= width else None
+
+
+def _extent(numbers: Iterable[int]) -> range:
+    known = list(numbers)
+    return range(min(known), max(known) + 1)
+
+
 def full(grid: Mapping[Position, Cell], ascii_only: bool) -> list[Text]:
     """Every tile as a box of 13 by 5 characters."""
     charset = ASCII if ascii_only else LINES
-    return _lines(grid, lambda cell: _box(cell, charset), INSIDE + 2, 5)
+    return _lines(grid, lambda cell: _box(cell, charset), BOX_WIDTH, BOX_HEIGHT)
 
 
 def small(grid: Mapping[Position, Cell]) -> list[Text]:
     """Every tile on one line: id, digit, links."""
-    return _lines(grid, lambda cell: [_line(cell)], 10, 1)
+    return _lines(grid, lambda cell: [_line(cell)], LINE_WIDTH, 1)
 
 
 def _lines(
@@ -69,12 +87,11 @@ def _lines(
 ) -> list[Text]:
     if not grid:
         return []
-    rows, cols = [row for row, _ in grid], [col for _, col in grid]
+    cols = _extent(col for _, col in grid)
     lines: list[Text] = []
-    for row in range(min(rows), max(rows) + 1):
+    for row in _extent(row for row, _ in grid):
         blocks = [
-            drawn(grid[row, col]) if (row, col) in grid else [Text(" " * width)] * height
-            for col in range(min(cols), max(cols) + 1)
+            drawn(grid[row, col]) if (row, col) in grid else [Text(" " * width)] * height for col in cols
         ]
         for number in range(height):
             line = Text.assemble(*(block[number] for block in blocks))

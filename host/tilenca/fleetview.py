@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterable
 
+from rich.console import OverflowMethod
 from rich.table import Table
 from rich.text import Text
 
@@ -77,11 +78,11 @@ def _or_dash(value: object) -> str:
     return "-" if value is None else str(value)
 
 
-def live_table(fleet: Fleet, now_s: float) -> Table:
+def live_table(fleet: Fleet, now_s: float, overflow: OverflowMethod = "ellipsis") -> Table:
     """The fleet as it is now, for a terminal."""
     picture = Table(box=None, pad_edge=False)
     for name in HEADER:
-        picture.add_column(name, no_wrap=True)
+        picture.add_column(name, no_wrap=True, overflow=overflow)
     for view in fleet.tiles.values():
         row = cells(view, now_s)
         healthy = view.is_open and not row[-1]

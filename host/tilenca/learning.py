@@ -20,6 +20,8 @@ from tilenca.tilesfile import MAX_TILE_ID, Place
 USER = "tilenca devices --learn"
 # Every tile tells of its four sides, one after another: within some of its periods.
 LISTEN_S = 12.0
+# A tile knows a neighbour's new id from its next frame, which comes within a period; and tells it after that.
+SETTLE_S = 0.5
 TICK_S = 0.1
 
 
@@ -50,10 +52,13 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool) -> Learnt:
         for name, answer in answers.items():
             if answer.hello is None:
                 warn(f"{name}: {answer.problem}; left out")
-        tiles = _ids(reader, {n: a.hello.tile for n, a in answers.items() if a.hello}, assign)
+        said = {name: answer.hello for name, answer in answers.items() if answer.hello}
+        tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign)
         if not tiles:
             raise TilencaError("no tile answers; flash them first: tilenca flash")
-        _listen(reader, fleet, set(tiles))
+        renamed = any(tile != said[name].tile for name, tile in tiles.items())
+        slowest_s = max(said[name].period_ms for name in tiles) / 1000
+        _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)
         cells = _cells(reader, tiles, fleet, blink)
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
@@ -88,15 +93,18 @@ def _ids(reader: PortReader, said: dict[str, int], assign: bool) -> dict[str, in
     return {name: tiles[name] for name in said if name in tiles}
 
 
-def _listen(reader: PortReader, fleet: Fleet, names: set[str]) -> None:
-    """Hears every tile tell of all its sides, as it is now: what was said under an old id is forgotten."""
+def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float) -> None:
+    """Hears every tile tell of all its sides, as it is in `settle_s`: what is said before is forgotten."""
+    settled_s = time.monotonic() + settle_s
     for view in fleet.tiles.values():
         view.links.clear()
-    end_s = time.monotonic() + LISTEN_S
-    while time.monotonic() < end_s:
+    while (now_s := time.monotonic()) < settled_s + LISTEN_S:
         for event in reader.poll(TICK_S):
             fleet.take(event)
-        if all(len(fleet.tiles[name].links) == 4 for name in names):
+        if now_s < settled_s:
+            for view in fleet.tiles.values():
+                view.links.clear()
+        elif all(len(fleet.tiles[name].links) == 4 for name in names):
             return
 
 

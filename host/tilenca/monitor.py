@@ -3,6 +3,7 @@
 import argparse
 import fnmatch
 import json
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
@@ -13,13 +14,16 @@ from rich.console import Console
 
 from tilenca.arguments import not_negative
 from tilenca.boards import Found, add_fleet_arguments, find_boards, find_fleet, load_places
-from tilenca.errors import NoDeviceError, TilencaError
+from tilenca.errors import NoDeviceError, TilencaError, UsageError
 from tilenca.fleetgrid import Grid
 from tilenca.fleetlive import LiveView
 from tilenca.fleetview import log_line, summary
+from tilenca.interrupts import held_back
+from tilenca.keyboard import Keyboard, is_ours
 from tilenca.portreader import PortReader
 from tilenca.ports import MAGIC
-from tilenca.recording import Recorder, format_event, paced, read_recording
+from tilenca.recording import Recorder, format_event, read_recording
+from tilenca.replay import KEYS, Player
 from tilenca.streams import warn
 from tilenca.telemetry import Event, Fleet, Heard, as_json
 
@@ -44,37 +48,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     storage.add_argument(
         "--record", type=Path, metavar="F", help="append all that is heard to F, with its time"
     )
-    storage.add_argument("--replay", type=Path, metavar="F", help="show a recording instead of reading ports")
+    storage.add_argument(
+        "--replay",
+        type=Path,
+        metavar="F",
+        help=f"show a recording instead of reading ports; on a terminal, {KEYS}",
+    )
     parser.add_argument(
         "--speed",
         type=not_negative,
-        default=1.0,
         metavar="X",
-        help="replay X times as fast; 0: at once (default: 1)",
+        help="with --replay: X times as fast; 0: at once (default: 1)",
     )
     parser.add_argument(
         "--from",
         type=not_negative,
-        default=0.0,
         dest="start",
         metavar="S",
-        help="start the replay S seconds after the recording's beginning",
+        help="with --replay: start S seconds after the recording's beginning",
     )
     parser.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
 
 
 def run(args: argparse.Namespace) -> int:
     """Shows events until the end or an interrupt; see `tilenca monitor --help`."""
+    for option, value in (("speed", args.speed), ("from", args.start)):
+        if value is not None and not args.replay:
+            raise UsageError(f"--{option} does nothing without --replay; add it, or leave --{option} out")
     fleet = Fleet()
     try:
         with ExitStack() as stack:
             if args.replay:
-                source, grid = _replay(args), Grid(load_places(args.tiles))
+                player = _player(args)
+                display = _display(args, fleet, Grid(load_places(args.tiles)), stack, player)
+                _show(iter(player), fleet, display, None, args.seconds)
             else:
                 source, grid = _listen(args, stack)
-            record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
-            display: Display = _JsonLines() if args.json else _display(args, fleet, grid, stack)
-            _show(source, fleet, display, record, args.seconds)
+                record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
+                _show(source, fleet, _display(args, fleet, grid, stack), record, args.seconds)
     finally:
         if fleet.tiles:
             warn(summary(fleet.tiles.values()))
@@ -158,14 +169,16 @@ def _awaited(args: argparse.Namespace) -> Found:
         time.sleep(TICK_S)
 
 
-def _replay(args: argparse.Namespace) -> Events:
-    """Events from a recording, of the ports that match."""
-    chosen = (
-        event
-        for event in read_recording(args.replay)
-        if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port)
-    )
-    return paced(chosen, args.speed, TICK_S, args.start)
+def _player(args: argparse.Namespace) -> Player:
+    """Plays the events of the ports that match."""
+
+    def chosen() -> Iterator[Event]:
+        for event in read_recording(args.replay):
+            if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port):
+                yield event
+
+    speed = 1.0 if args.speed is None else args.speed
+    return Player(chosen, speed, TICK_S, args.start or 0.0)
 
 
 class _JsonLines:
@@ -191,11 +204,22 @@ class _LogLines:
             print(end="", flush=True)
 
 
-def _display(args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack) -> Display:
+def _display(
+    args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack, player: Player | None = None
+) -> Display:
+    """JSON if so asked; on a terminal the live picture, with keys for what is replayed; else lines."""
+    if args.json:
+        return _JsonLines()
     console = Console()
-    if not console.is_terminal:
+    if not console.is_terminal or console.is_dumb_terminal:
         return _LogLines()
-    about = f"replay of {args.replay}, {args.speed:g} times as fast" if args.replay else ""
+    about = f"replay of {args.replay}" if player else ""
     display = LiveView(fleet, grid, console, args.table, about)
+    if player and sys.stdin and is_ours(sys.stdin.fileno()):
+        with held_back():  # whoever takes the terminal is sure to give it back
+            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno())).wait
+        if args.replay.is_file():  # what comes through a pipe comes once
+            player.begin_again = display.begin_again
+        display.footer = lambda: f"{player.status}; {KEYS}"
     stack.enter_context(display.live)
     return display

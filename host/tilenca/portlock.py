@@ -2,9 +2,8 @@
 
 import fcntl
 import os
-import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tilenca.errors import TilencaError
@@ -70,7 +69,9 @@ def port_lock(name: str, user: str) -> Iterator[int]:
         PortBusyError: it is taken.
         TilencaError: the lock cannot be made.
     """
-    path = Path(tempfile.gettempdir()) / "tilenca-locks" / os.path.realpath(name).strip("/").replace("/", "-")
+    # Not tempfile.gettempdir(), which looks elsewhere when the disk is full: all must lock in the same place.
+    folder = Path(os.environ.get("TMPDIR") or "/tmp") / "tilenca-locks"
+    path = folder / os.path.realpath(name).strip("/").replace("/", "-")
     try:
         descriptor = _open_shared(path)
     except OSError as error:
@@ -81,9 +82,11 @@ def port_lock(name: str, user: str) -> Iterator[int]:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise PortBusyError(os.pread(descriptor, 200, 0).decode("utf-8", "replace")) from None
-        os.ftruncate(descriptor, 0)
-        os.pwrite(descriptor, f"{user} (pid {os.getpid()})".encode(), 0)
+            holder = os.pread(descriptor, 200, 0).decode("utf-8", "replace")
+            raise PortBusyError(holder or "another tilenca command") from None
+        with suppress(OSError):  # no room for its name: the lock holds all the same
+            os.ftruncate(descriptor, 0)
+            os.pwrite(descriptor, f"{user} (pid {os.getpid()})".encode(), 0)
         yield descriptor
     finally:
         os.close(descriptor)

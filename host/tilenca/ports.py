@@ -8,6 +8,7 @@ import grp
 import os
 import re
 import stat
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from pathlib import Path
 from serial.tools.list_ports import comports
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca.errors import NoDeviceError
+from tilenca.errors import NoDeviceError, TilencaError
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,9 @@ ADAPTERS: dict[tuple[int, int], Adapter] = {
     (0x0403, 0x6001): Adapter("FTDI FT232R adapter", certain=False),
     (0x0403, 0x6015): Adapter("FTDI FT231X adapter", certain=False),
 }
+
+# pyserial stumbles over a board that is pulled while it is being looked at.
+LOOKS, LOOK_AGAIN_S = 5, 0.1
 
 MAGIC = re.compile(r"[*?[]")
 
@@ -71,22 +75,46 @@ def natural_key(text: str) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
 
 
+def serial_ports() -> list[ListPortInfo]:
+    """All ports of this machine, as pyserial lists them.
+
+    Raises:
+        TilencaError: it cannot, not even after a while.
+    """
+    for _ in range(LOOKS):
+        try:
+            return list(comports())
+        except TypeError:
+            time.sleep(LOOK_AGAIN_S)
+    raise TilencaError("a board on USB does not say what it is; pull its cable and plug it in again")
+
+
 def describe(info: ListPortInfo) -> Port:
     """What pyserial knows of a port, in our terms."""
     adapter = ADAPTERS.get((info.vid, info.pid))
     if adapter is None:
-        about = info.product or info.description or ""
+        about = _printable(info.product or info.description or "")
         about = "" if about == "n/a" else about
     else:
         about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
     # An empty serial number tells no board from another, nor does a blank one.
-    serial_number = (info.serial_number or "").strip() or None
+    serial_number = _printable((info.serial_number or "").strip()) or None
     return Port(info.device, info.vid, info.pid, serial_number, info.location or None, about)
+
+
+def _printable(text: str) -> str:
+    """What a board says of itself goes to terminals and into files: some say nonsense."""
+    return "".join(character if character.isprintable() else "?" for character in text)
+
+
+def is_mega(port: Port) -> bool:
+    """Whether its USB ids are those of a Mega 2560, or of a chip that its clones have."""
+    return (port.vid, port.pid) in ADAPTERS
 
 
 def megas(infos: Iterable[ListPortInfo]) -> list[Port]:
     """The ports among `infos` that are, or may be, Mega 2560s, in natural order of their names."""
-    found = [describe(info) for info in infos if (info.vid, info.pid) in ADAPTERS]
+    found = filter(is_mega, map(describe, infos))
     return sorted(found, key=lambda port: natural_key(port.name))
 
 
@@ -99,7 +127,7 @@ def find_ports(patterns: Sequence[str] = ()) -> list[Port]:
     Raises:
         NoDeviceError: nothing was found.
     """
-    infos = list(comports())
+    infos = serial_ports()
     if not patterns:
         if found := megas(infos):
             return found

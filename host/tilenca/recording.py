@@ -4,21 +4,22 @@ A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port"
 """
 
 import json
-import time
-from collections.abc import Callable, Iterable, Iterator
+import os
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
 from tilenca.errors import TilencaError, UsageError
 from tilenca.protocol import parse_sentence
+from tilenca.streams import warn
 from tilenca.telemetry import Event, Heard, PortNews
 
 # Every byte is a character of Latin-1 and back.
 ENCODING = "latin-1"
 
-# An event so near is due: less than this a clock's own rounding may never reach.
-DUE_S = 1e-3
+# The last moment that all clocks and calendars can name.
+LAST_S = 253_402_300_799.0
 
 
 def as_record(event: Event) -> dict[str, object]:
@@ -43,10 +44,12 @@ class Recorder:
         """Opens the file, to write it anew (`w`) or to append (`a`).
 
         Raises:
-            UsageError: it cannot be opened.
+            UsageError: it cannot be opened, or its last line was cut off: what is appended could not be read.
         """
         self._path = path
         try:
+            if mode == "a" and path.is_file() and not _ends_well(path):
+                raise UsageError(f"{path}: its last line is cut off; give --record another file")
             self._file = path.open(mode, encoding="ascii")
         except OSError as error:
             raise UsageError(f"{path}: {error.strerror}; give --record a file that can be written") from error
@@ -73,6 +76,13 @@ class Recorder:
             self._file.close()
 
 
+def _ends_well(path: Path) -> bool:
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - 1, 0))
+        return file.read() in (b"", b"\n")
+
+
 def parse_event(line: str) -> Event:
     """The event of a line.
 
@@ -81,6 +91,8 @@ def parse_event(line: str) -> Event:
     """
     about = json.loads(line)
     match about:
+        case {"time": float() | int() as time_s} if not 0 <= time_s <= LAST_S:
+            raise ValueError(f"{time_s} is no time in seconds since 1970")
         case {"time": float() | int() as time_s, "port": str(port), "raw": str(text)}:
             raw = text.encode(ENCODING)
             return Heard(float(time_s), port, raw, parse_sentence(raw))
@@ -106,6 +118,9 @@ def read_recording(path: Path) -> Iterator[Event]:
                 try:
                     yield parse_event(line)
                 except ValueError as error:
+                    if not line.endswith("\n"):
+                        warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
+                        return
                     raise UsageError(
                         f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
                     ) from error
@@ -113,29 +128,3 @@ def read_recording(path: Path) -> Iterator[Event]:
         raise UsageError(f"{path}: {error.strerror}; give a file that --record wrote") from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not a recording; give a file that --record wrote") from error
-
-
-def paced(
-    events: Iterable[Event],
-    speed: float,
-    tick_s: float,
-    start_s: float = 0.0,
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], None] = time.sleep,
-) -> Iterator[tuple[float, list[Event]]]:
-    """Plays events back as they came, `speed` times as fast; 0: without any wait.
-
-    What came in the first `start_s` seconds is played at once.
-
-    Yields:
-        The recording's time now in seconds since 1970, and the events that are due; at least every `tick_s`.
-    """
-    began_s = clock()
-    first_s: float | None = None
-    for event in events:
-        first_s = event.time_s if first_s is None else first_s
-        offset_s = event.time_s - first_s - start_s
-        while speed and (wait_s := offset_s / speed - (clock() - began_s)) > DUE_S:
-            sleep(min(wait_s, tick_s))
-            yield first_s + start_s + (clock() - began_s) * speed, []
-        yield event.time_s, [event]

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from tilenca.asking import ask
-from tilenca.boards import add_fleet_arguments, find_fleet, tile_numbers
+from tilenca.boards import add_fleet_arguments, find_fleet, tell_contradiction, tile_numbers
 from tilenca.commanding import command_all
 from tilenca.errors import NoDeviceError, UsageError
 from tilenca.portreader import PortReader
 from tilenca.protocol import PRESETS, SETTING_RANGES, HelloSentence, set_command
-from tilenca.streams import warn
 from tilenca.tables import table
 
 USER = "tilenca set"
@@ -34,9 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 @dataclass
 class Row:
-    """What became of one tile; `hello` is what it said last of itself."""
+    """What became of one tile; `hello` is what it said last of itself; without a port it is not connected."""
 
-    port: str
+    port: str | None
     tile: int | None
     result: str = "failed"
     error: str | None = None
@@ -53,17 +52,30 @@ def run(args: argparse.Namespace) -> int:
     wanted = set[int]().union(*map(tile_numbers, args.tile)) if args.tile else None
     found = find_fleet(args.port, args.tiles)
     found.tell_others()
-    rows = {board.port.name: Row(board.port.name, board.tile) for board in found.boards}
+    listed = {board.port.name: board.tile for board in found.boards}
+    # Opening its port may reset a tile: those that are known not to be meant are left in peace.
+    rows = {
+        name: Row(name, tile)
+        for name, tile in listed.items()
+        if wanted is None or tile is None or tile in wanted
+    }
     with PortReader(list(rows), user=USER) as reader:
         rows = _known(reader, rows, wanted)
         if args.name == "id" and len(rows) > 1 and value != 0:
             raise UsageError(f"{len(rows)} tiles would have the same id; choose one with --tile or --port")
         _set(reader, rows, args.name, value, order)
-    absent = [p for p in found.missing if wanted is None or p.tile in wanted]
-    for place in absent:
-        warn(f"tile {place.tile} ({place.board}): not connected")
-    _print(list(rows.values()), args.json)
-    return 0 if not absent and all(row.result == "set" for row in rows.values()) else 1
+    for port, row in rows.items():
+        if listed[port] is None and row.hello:
+            row.tile = row.hello.tile or None
+        tell_contradiction(port, listed[port], row.hello)
+    absent = [
+        Row(None, place.tile, "missing", f"not connected ({place.board}); connect it and set again")
+        for place in found.missing
+        if wanted is None or place.tile in wanted
+    ]
+    everything = [*rows.values(), *absent]
+    _print(everything, args.json)
+    return 0 if all(row.result == "set" for row in everything) else 1
 
 
 def _known(reader: PortReader, rows: dict[str, Row], wanted: set[int] | None) -> dict[str, Row]:
@@ -109,7 +121,7 @@ def _print(rows: list[Row], as_json: bool) -> None:
     lines = []
     for row in rows:
         settings = [str(value) for value in _settings(row).values()] or ["-"] * len(FIELDS)
-        lines.append([row.port, str(row.tile or "-"), row.result, *settings, row.error or ""])
+        lines.append([row.port or "-", str(row.tile or "-"), row.result, *settings, row.error or ""])
     print(table(HEADER, lines))
 
 

@@ -1,5 +1,6 @@
 """Standard output and standard error, which may be closed, full, or a pipe whose reader has gone."""
 
+import io
 import os
 import sys
 from contextlib import suppress
@@ -26,6 +27,9 @@ def check_streams() -> None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - for as long as the process lives
     if sys.stdout is None:
         raise TilencaError("standard output is closed; redirect it to a file or to /dev/null")
+    # A locale without the characters of a name ends no command.
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def finish_streams() -> None:

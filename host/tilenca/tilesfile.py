@@ -24,6 +24,8 @@ DEFAULT = Path("tiles.toml")
 MAX_TILE_ID = 255
 KINDS = ("serial", "location", "port")
 KEYS = {"id", "row", "col", "board"}
+# More rows or columns than any table has room for are a slip of the pen.
+FAR = 999
 
 HEAD = """\
 # Which board is which tile, and where it lies: rows from the north, columns from the west.
@@ -79,10 +81,12 @@ def _place(about: Any, others: list[Place]) -> Place:
     numbers = [about["id"], about["row"], about["col"]]
     if any(type(number) is not int for number in numbers):
         raise ValueError("id, row and col are whole numbers")
+    if any(abs(number) > FAR for number in numbers[1:]):
+        raise ValueError(f"row and col are from -{FAR} to {FAR}")
     place = Place(numbers[0], about["board"], numbers[1], numbers[2])
     if not 1 <= place.tile <= MAX_TILE_ID:
         raise ValueError(f"id {place.tile} is not from 1 to {MAX_TILE_ID}")
-    if not isinstance(place.board, str) or not re.fullmatch(f"({'|'.join(KINDS)}):.+", place.board):
+    if not isinstance(place.board, str) or not re.fullmatch(f"({'|'.join(KINDS)}):[^\\0]+", place.board):
         raise ValueError('board is "serial:...", "location:..." or "port:..."')
     for other in others:
         if place.tile == other.tile:

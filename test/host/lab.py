@@ -1,6 +1,9 @@
 """A lab of emulated tiles served as ports in this process, so that a test can pull and plug their cables."""
 
+import mmap
+import os
 import queue
+import struct
 import threading
 import time
 from collections.abc import Callable
@@ -8,12 +11,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tilenca.emulate_serve import MAX_LAG_S, STEP_S, STOCK_BOOTLOADER, ServedTile
+from tilenca import paths
+from tilenca.emulate_serve import STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.emulation import Conditions, Emulation, firmware_settings, port_name
 from tilenca.shapes import load_task
 
-LIMIT_S = 120
-STANDSTILL_S = 1.0
+LIMIT_S = 600
+# avrdude waits five seconds of everybody's time for an answer: twenty tiles' step must not take that long.
+LONGEST_STEP_S = 0.01
+# No avrdude takes so long to react, however busy this machine is.
+STANDSTILL_S = 10.0
+CLOCK = Path(__file__).with_name("lab_clock")
 # A bootloader's answer: this byte, a sequence number, the size (two bytes), a token, the body, a checksum.
 # What the firmware says is text.
 START, ENVELOPE = b"\x1b", 6
@@ -31,6 +39,16 @@ class Lab:
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
+        clock = folder / "clock"
+        clock.write_bytes(bytes(struct.calcsize("d")))
+        with clock.open("r+b") as file:
+            self._clock = mmap.mmap(file.fileno(), 0)
+        # For the commands that use the lab.
+        self.environment = {
+            **os.environ,
+            "PYTHONPATH": f"{CLOCK}:{paths.ROOT / 'host'}",
+            "TILENCA_LAB_CLOCK": str(clock),
+        }
         self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
         self._answers: dict[ServedTile, bytes] = {}  # what each bootloader has said of its present one
         self._served: dict[int, ServedTile] = {}
@@ -62,7 +80,8 @@ class Lab:
         while True:
             time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
             now_s = time.monotonic()
-            self._emulation.pass_time(min(now_s - last_s, MAX_LAG_S))
+            self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S))
+            self._clock[:] = struct.pack("d", self.time_s)
             while not self._orders.empty():
                 if (order := self._orders.get()) is None:
                     return

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca import boards, ports
-from tilenca.boards import find_boards, find_fleet, tile_numbers
+from tilenca import ports
+from tilenca.boards import find_boards, find_fleet, tell_contradiction, tile_numbers
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
+from tilenca.protocol import HelloSentence
 from tilenca.tilesfile import Place, write_tiles
 
 
@@ -38,8 +39,7 @@ LAB = [
 def lab(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[ListPortInfo]:
     """What is on USB; the test may change the list. No file of tiles but the test's own."""
     infos = list(LAB)
-    for module in (boards, ports):
-        monkeypatch.setattr(module, "comports", lambda: infos)
+    monkeypatch.setattr(ports, "comports", lambda: infos)
     monkeypatch.chdir(tmp_path)
     return infos
 
@@ -110,6 +110,36 @@ def test_a_device_that_is_not_on_usb_is_found_by_its_name(
     assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [(str(link), 3, 4, 2)]
     assert document["missing"] == [{"tile": 4, "row": 4, "col": 3, "board": "serial:none"}]
     assert captured.err == "tile 4 (serial:none): not connected\n"
+
+
+def test_a_board_on_usb_that_the_file_lists_by_its_path_is_one_board(
+    lab: list[ListPortInfo], pty: str, tmp_path: Path
+) -> None:
+    link = tmp_path / "by-id"
+    link.symlink_to(pty)
+    lab.append(usb(pty, "999", "1-9", MEGA))
+    write_tiles(Path("tiles.toml"), [Place(3, f"port:{link}", 0, 0)])
+    found = find_boards([], None)
+    assert [(board.port.name, board.name, board.tile) for board in found.boards] == [(pty, f"port:{link}", 3)]
+    assert pty not in [board.port.name for board in found.others]
+
+
+def test_a_serial_number_that_is_no_text_disturbs_no_terminal(lab: list[ListPortInfo]) -> None:
+    lab[:] = [usb("/dev/ttyACM0", "8\x1b[2J\n5", "1-1", MEGA)]
+    [board] = find_boards([], None).boards
+    assert board.name == "serial:8?[2J?5"
+    write_tiles(Path("tiles.toml"), [Place(7, board.name, 0, 0)])
+    assert [board.tile for board in find_boards([], None).boards] == [7]
+
+
+def test_a_tile_that_calls_itself_otherwise_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    hello = HelloSentence(2, 9, 0, 21, 10, 100, 0, 0, 0, 255)
+    tell_contradiction("p", 9, hello)
+    tell_contradiction("p", None, hello)
+    tell_contradiction("p", 7, None)
+    assert capsys.readouterr().err == ""
+    tell_contradiction("p", 7, hello)
+    assert "tile 7 by the file of tiles, but it calls itself 9" in capsys.readouterr().err
 
 
 def test_lists_of_tiles() -> None:

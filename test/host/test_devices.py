@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -148,10 +147,26 @@ def test_a_program_that_has_the_port_open_is_named(pty: str) -> None:
     assert holders([pty]) == {}, "neither this process nor a dead one holds it"
 
 
+def test_a_lock_holds_even_where_there_is_no_room_for_a_name(pty: str) -> None:
+    program = (
+        "import resource, sys; from tilenca.portlock import port_lock; "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); lock = port_lock(sys.argv[1], 'us'); "
+        "lock.__enter__(); print(flush=True); input()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program, pty], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        with pytest.raises(PortBusyError, match=r"^another tilenca command$"), port_lock(pty, "other"):
+            pass
+        child.communicate(b"\n", timeout=60)
+
+
 def test_locks_that_cannot_be_kept_are_told(
     pty: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tilenca-locks").write_text("a file of somebody's")
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
     with pytest.raises(TilencaError, match=r"tilenca-locks.*Not a directory.*TMPDIR"), port_lock(pty, "us"):
         pass

@@ -20,7 +20,10 @@ from tilenca import paths
 from tilenca.avrdude import Output, Progress, find_avrdude
 from tilenca.cli import main
 from tilenca.errors import TilencaError
+from tilenca.flashmemory import failed_boards, remember
+from tilenca.flashview import ending
 from tilenca.portlock import port_lock
+from tilenca.tilesfile import Place, write_tiles
 
 DATA = bytes(index * 7 & 0xFF for index in range(6000))
 LIMIT_S = 60
@@ -115,6 +118,59 @@ def test_the_next_call_with_failed_flashes_those_and_no_other(firmware: Path) ->
         status, tiles, chatter = flash(firmware, good.port, bad.port, options=("--failed",))
     assert (status, tiles) == (0, {})
     assert "nothing to do" in chatter
+
+
+def test_what_was_missing_is_flashed_with_those_that_failed(firmware: Path, tmp_path: Path) -> None:
+    cable = tmp_path / "cable"
+    with StandIn() as here, StandIn() as loose:
+        tiles = tmp_path / "tiles.toml"
+        write_tiles(tiles, [Place(1, f"port:{here.port}", 0, 0), Place(2, f"port:{cable}", 0, 1)])
+        options = ("--tiles", str(tiles))
+        status, _, chatter = flash(firmware, options=options)
+        assert status == 1
+        assert "--failed" in chatter
+        status, rows, chatter = flash(firmware, options=(*options, "--failed"))
+        assert (status, [row["result"] for row in rows.values()]) == (1, ["missing"])
+        assert "nothing to do" not in chatter
+        cable.symlink_to(loose.port)
+        status, rows, _ = flash(firmware, options=(*options, "--failed"))
+        assert (status, [row["tile"] for row in rows.values()]) == (0, [2])
+        assert loose.flash[: len(DATA)] == DATA
+
+
+def test_what_to_do_is_known_before_anything_is_built(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(paths, "ROOT", tmp_path)  # no project there: a build would fail
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    with StandIn() as board:
+        assert main(["flash", "--only", "x", "--port", board.port]) == 2
+        assert main(["flash", "--failed", "--port", board.port]) == 0
+    assert "nothing to do" in capsys.readouterr().err
+
+
+def test_calls_that_end_at_the_same_moment_forget_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    names = [f"port:{number}" for number in range(40)]
+    threads = [threading.Thread(target=remember, args=({name: False},)) for name in names]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failed_boards() == set(names)
+    (tmp_path / "tilenca" / "failed.json").write_bytes(b"\xff")
+    remember({"port:1": False, "port:2": True})
+    assert failed_boards() == {"port:1"}
+
+
+def test_on_a_narrow_terminal_boards_are_told_apart_by_the_end_of_their_names() -> None:
+    titles = [f"/tmp/a-long-folder-name-of-a-port/tile-{number} tile {number}" for number in (1, 2)]
+    shown = [ending(title, 20) for title in titles]
+    assert [line[-14:] for line in shown] == ["/tile-1 tile 1", "/tile-2 tile 2"]
+    assert {len(line) for line in shown} == {20}
+    assert ending("ttyACM3", 0) == "ttyACM3"
 
 
 def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> None:

@@ -19,10 +19,10 @@ from tilenca import paths
 from tilenca.ihex import check_image
 from tilenca.tilesfile import read_tiles
 
-LIMIT_S = 240
+# Only a hang takes so long; a busy machine may take minutes for what takes an idle one seconds.
+LIMIT_S = 1200
 SCREENFULS = 2_000_000
 ROWS = ["####"] * 5
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(paths.ROOT / "host")}
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def tilenca(lab: Lab, *arguments: str, status: int = 0, typed: str = "") -> subp
     done = subprocess.run(
         command(*arguments),
         cwd=lab.folder,
-        env=ENVIRONMENT,
+        env=lab.environment,
         input=typed,
         capture_output=True,
         text=True,
@@ -100,14 +100,14 @@ def test_a_tile_unplugged_in_the_middle_is_told_and_flashed_by_the_next_call(
     with subprocess.Popen(
         command("flash", "--json", "--hex", str(other), "--force", "--only", "7"),
         cwd=lab.folder,
-        env=ENVIRONMENT,
+        env=lab.environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     ) as flashing:
         assert flashing.stderr is not None
         assert any(line.endswith("writing\n") for line in flashing.stderr), "it never wrote"
-        lab.pass_time(2.0)
+        lab.pass_time(1.0)
         lab.unplug(7)
         output, _ = flashing.communicate(timeout=LIMIT_S)
     assert flashing.returncode == 1
@@ -149,8 +149,9 @@ def test_a_tile_that_is_not_there_is_told_and_stops_no_other(lab: Lab) -> None:
     lab.unplug(20)
     try:
         done = tilenca(lab, "set", "brightness", "255", "--json", status=1)
-        assert "tile 20" in done.stderr
-        assert results(done) == ["set"] * 19
+        assert results(done) == ["set"] * 19 + ["missing"]
+        last = json.loads(done.stdout)["tiles"][-1]
+        assert (last["port"], last["tile"], last["settings"]) == (None, 20, None)
         document = json.loads(tilenca(lab, "devices", "--json").stdout)
         assert [tile["tile"] for tile in document["missing"]] == [20]
     finally:
@@ -181,7 +182,7 @@ def test_tiles_without_an_id_of_their_own_get_one_if_asked(lab: Lab, tmp_path: P
 def test_the_monitor_draws_the_lab_and_survives_unplug_and_replug(lab: Lab) -> None:
     screen, inside = pty.openpty()
     termios.tcsetwinsize(inside, (45, 120))
-    environment = {**ENVIRONMENT, "TERM": "xterm-256color"}
+    environment = {**lab.environment, "TERM": "xterm-256color"}
     with subprocess.Popen(
         command("monitor"), cwd=lab.folder, env=environment, stdout=inside, stderr=subprocess.PIPE
     ) as monitor:

@@ -61,7 +61,7 @@ def lab(firmware: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[La
 
 def test_the_commands_run_as_written_in_their_order(lab: Lab) -> None:
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    environment = {**os.environ, "PYTHONPATH": str(paths.ROOT / "host"), "PATH": path}
+    environment = {**lab.environment, "PATH": path}
     for command, more in MORE.items():
         words = shlex.split(command)
         if words[0] == "tilenca":

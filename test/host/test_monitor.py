@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import select
 import signal
 import subprocess
@@ -31,6 +32,7 @@ from tilenca.protocol import (
     TimeSentence,
     format_sentence,
 )
+from tilenca.recording import format_event
 from tilenca.telemetry import Event, Heard, PortNews, TileView
 from tilenca.wording import printable
 
@@ -199,17 +201,7 @@ def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
             tile.say("7")
             monitor.read_until(monitor.process.stdout, lambda line: "TILE shows 7" in line)
         monitor.interrupt()
-    screen, inside = pty.openpty()
-    termios.tcsetwinsize(inside, (40, 150))
-    environment = {**os.environ, "TERM": "xterm-256color", "NO_COLOR": "1"}
-    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--replay", str(record)]
-    command += ["--speed", "0", *options]
-    done = subprocess.run(
-        command, stdout=inside, stderr=subprocess.PIPE, env=environment, timeout=LIMIT_S, check=False
-    )
-    os.close(inside)
-    picture = read_all(screen)
-    assert done.returncode == 0, done.stderr
+    picture = on_terminal(record, (40, 150), options, TERM="xterm-256color", NO_COLOR="1")
     assert "\x1b[3" not in picture, "a colour"
     assert "3 tiles  3 show 7" in picture
     if not options:
@@ -220,6 +212,52 @@ def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
     for tile in tiles:
         row = next(line for line in reversed(picture.splitlines()) if line.startswith(tile.port))
         assert row.split()[:6] == [tile.port, str(tile.tile), "7", "1", "0", "s"]
+
+
+@pytest.mark.parametrize("table", [["--table"], []])
+def test_a_narrow_terminal_without_unicode_gets_what_fits(table: list[str], tmp_path: Path) -> None:
+    record = tmp_path / "record.jsonl"
+    events: list[Event] = [PortNews(1.0, "/dev/ttyUSB0", is_open=True)]
+    for tile in (1, 2):
+        raw = format_sentence(TileSentence(tile, 9, 1, "7", "----", STATE)).strip()
+        events.append(Heard(1.0, "/dev/ttyUSB0", raw, None))
+    record.write_text("".join(map(format_event, events)))
+    picture = on_terminal(record, (20, 40), table, TERM="xterm", PYTHONIOENCODING="ascii")
+    assert picture.isascii()
+    lines = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", picture).split("PORT  ")[0].splitlines()
+    assert max(map(len, lines)) <= 40
+
+
+def test_a_name_that_the_locale_does_not_know_ends_nothing(tmp_path: Path) -> None:
+    record = tmp_path / "record.jsonl"
+    record.write_text(format_event(PortNews(1.0, "M\u00fcller", is_open=True)))
+    shown = on_terminal(record, (20, 40), [], TERM="dumb", PYTHONIOENCODING="ascii")
+    assert "M\\xfcller - PORT open" in shown
+
+
+def test_a_terminal_that_cannot_move_its_cursor_gets_lines(tmp_path: Path) -> None:
+    record = tmp_path / "record.jsonl"
+    record.write_text(format_event(PortNews(1.0, "p", is_open=True)))
+    assert on_terminal(record, (20, 40), [], TERM="dumb").splitlines()[0].endswith("p - PORT open")
+
+
+def on_terminal(record: Path, size: tuple[int, int], options: list[str], **environment: str) -> str:
+    """What a terminal is sent when a recording is replayed at once."""
+    screen, inside = pty.openpty()
+    termios.tcsetwinsize(inside, size)
+    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--replay", str(record), "--speed", "0"]
+    done = subprocess.run(
+        [*command, *options],
+        stdin=subprocess.DEVNULL,
+        stdout=inside,
+        stderr=subprocess.PIPE,
+        env={**os.environ, **environment},
+        timeout=LIMIT_S,
+        check=False,
+    )
+    os.close(inside)
+    assert done.returncode == 0, done.stderr
+    return read_all(screen)
 
 
 def read_all(descriptor: int) -> str:
@@ -287,6 +325,8 @@ def test_a_hundred_bursts_from_many_ports_lose_nothing(tiles: list[Tile]) -> Non
         ["--replay", "/dev/null", "--record", "x"],
         ["--seconds", "-1"],
         ["--speed", "nan"],
+        ["--speed", "2", "--port", "/dev/null"],
+        ["--from", "2", "--port", "/dev/null"],
     ],
 )
 def test_bad_arguments_exit_with_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""Recordings: what is written is played back, at its pace, and what is none is refused with its line."""
+"""Recordings: what is written is read back, and what is none is refused with its line."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tilenca.errors import UsageError
 from tilenca.protocol import parse_sentence
-from tilenca.recording import format_event, paced, parse_event, read_recording
+from tilenca.recording import Recorder, format_event, parse_event, read_recording
 from tilenca.telemetry import Event, Heard, PortNews
 
 times = st.integers(0, 2**52).map(lambda us: us / 2**20).map(lambda s: round(s, 6))
@@ -55,49 +55,23 @@ def test_what_is_no_text_file_is_refused(content: bytes | None, tmp_path: Path) 
         list(read_recording(path))
 
 
-class Clock:
-    """Time that passes only by sleeping."""
-
-    def __init__(self) -> None:
-        self.now_s = 100.0
-
-    def __call__(self) -> float:
-        return self.now_s
-
-    def sleep(self, seconds: float) -> None:
-        assert seconds > 0
-        self.now_s += seconds
+@pytest.mark.parametrize("moment", ["NaN", "Infinity", "-1", "1e18"])
+def test_a_moment_that_no_clock_shows_is_refused(moment: str) -> None:
+    with pytest.raises(ValueError, match="is no time"):
+        parse_event(f'{{"time": {moment}, "port": "p", "raw": ""}}')
 
 
-@pytest.mark.parametrize("speed", [0.5, 1.0, 10.0])
-def test_events_are_played_at_their_pace(speed: float) -> None:
-    clock = Clock()
-    recorded = [PortNews(1000.0 + offset, "p", is_open=True) for offset in (0.0, 0.5, 0.5, 3.0)]
-    played = []
-    last_tick_s = clock()
-    for _, due in paced(recorded, speed, 0.2, 0.0, clock, clock.sleep):
-        assert clock() - last_tick_s <= 0.2 + 1e-9, "the display is fed at least every tick"
-        last_tick_s = clock()
-        played += [(clock() - 100.0, event) for event in due]
-    assert [event for _, event in played] == recorded
-    assert [at_s for at_s, _ in played] == pytest.approx(
-        [0.0, 0.5 / speed, 0.5 / speed, 3.0 / speed], abs=1e-3
-    )
-
-
-def test_a_replay_from_later_on_plays_what_was_before_at_once() -> None:
-    clock = Clock()
-    recorded = [PortNews(1000.0 + offset, "p", is_open=True) for offset in (0.0, 50.0, 61.0)]
-    times = [
-        (round(clock() - 100.0, 2), event.time_s)
-        for _, due in paced(recorded, 2.0, 0.2, 60.0, clock, clock.sleep)
-        for event in due
-    ]
-    assert times == [(0.0, 1000.0), (0.0, 1050.0), (0.5, 1061.0)]
-
-
-def test_speed_0_never_waits() -> None:
-    clock = Clock()
-    recorded = [PortNews(time_s, "p", is_open=True) for time_s in (0.0, 1e6)]
-    assert len(list(paced(recorded, 0.0, 0.2, 0.0, clock, clock.sleep))) == 2
-    assert clock() == 100.0
+def test_a_recording_that_was_cut_off_is_played_to_there_and_not_appended_to(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "record"
+    whole = format_event(PortNews(1.0, "p", is_open=True))
+    path.write_text(whole + whole[:-9])
+    assert list(read_recording(path)) == [PortNews(1.0, "p", is_open=True)]
+    assert capsys.readouterr().err.startswith(f"{path}:2: cut off")
+    with pytest.raises(UsageError, match="its last line is cut off"):
+        Recorder(path, "a")
+    path.write_text(whole)
+    with Recorder(path, "a") as record:
+        record.write([whole])
+    assert path.read_text() == 2 * whole

@@ -16,6 +16,8 @@ from test_ihex import image
 from tilenca import paths
 
 LIMIT_S = 120
+# What each of the three comes to hear.
+LINKS = {1: "--S-", 2: "N-S-", 3: "N---"}
 
 # `rjmp .-2` at the reset vector: a program that does nothing for ever.
 IDLE = image(b"\xff\xcf")
@@ -55,11 +57,15 @@ def served(firmware: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         serving.communicate(timeout=LIMIT_S)
 
 
-def heard(served: str) -> list[dict[str, Any]]:
-    """What the monitor hears within two seconds of opening the ports, which resets the tiles."""
-    done = tilenca("monitor", "--json", "--seconds", "2", "--port", served)
-    assert done.returncode == 0, done.stderr
-    return [json.loads(line) for line in done.stdout.splitlines()]
+def monitored(served: str, *options: str) -> Iterator[dict[str, Any]]:
+    """What the monitor hears after it has opened the ports, which resets the tiles."""
+    command = [sys.executable, "-m", "tilenca.cli", "monitor", "--json", *options, "--port", served]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as monitor:
+        try:
+            assert monitor.stdout is not None
+            yield from map(json.loads, monitor.stdout)
+        finally:
+            monitor.send_signal(signal.SIGINT)
 
 
 def flash(served: str, firmware: Path) -> None:
@@ -87,13 +93,15 @@ def test_tiles_are_programmed_side_by_side_and_run_what_was_written(
     idle = tmp_path / "idle.hex"
     idle.write_text(IDLE)
     flash(served, idle)
-    assert heard(served) == [], "the idle program says nothing"
+    assert list(monitored(served, "--seconds", "2")) == [], "the idle program says nothing"
     flash(served, firmware.with_suffix(".hex"))
-    sentences = heard(served)
-    for number in (1, 2, 3):
-        mine = [sentence for sentence in sentences if sentence["port"].endswith(f"tile-0{number}")]
-        assert {sentence["tile"] for sentence in mine} == {number}
-        assert mine[0]["type"] == "HELLO"
-        assert {sentence["type"] for sentence in mine} == {"HELLO", "TILE", "LINK", "TIME"}
-        last = next(sentence for sentence in reversed(mine) if sentence["type"] == "TILE")
-        assert last["fields"]["links"] == ["--S-", "N-S-", "N---"][number - 1]
+    first: dict[int, str] = {}
+    missing = {(tile, kind) for tile in LINKS for kind in ("LINK", "TIME", LINKS[tile])}
+    for sentence in monitored(served):
+        tile, kind = sentence["tile"], sentence["type"]
+        assert sentence["port"].endswith(f"tile-0{tile}")
+        first.setdefault(tile, kind)
+        missing.discard((tile, sentence["fields"]["links"] if kind == "TILE" else kind))
+        if not missing:
+            break
+    assert set(first.values()) == {"HELLO"}, "the ports' opening has reset them"

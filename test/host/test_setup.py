@@ -99,6 +99,17 @@ def test_an_environment_without_its_interpreter_is_not_used(tmp_path: Path) -> N
     assert not python.belongs_here(tmp_path / "never")
 
 
+def test_an_environment_elsewhere_is_never_emptied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = make_environment_at(tmp_path / "other", f"#!{tmp_path}/other/bin/python")
+    link = tmp_path / ".venv"
+    link.symlink_to(other)
+    monkeypatch.setattr(python, "VENV", link)
+    with pytest.raises(SetupError, match=rf"^{link} is a link to {other}, .* remove the link"):
+        python.make_environment(["demo"])
+    assert (other / "bin" / "pip").exists()
+    assert link.is_symlink()
+
+
 def run_apt(tmp_path: Path, package: str, **programs: str) -> subprocess.CompletedProcess[str]:
     """Runs apt.sh on a machine whose programs are the real ones but for those given as shell scripts."""
     for name, body in programs.items():

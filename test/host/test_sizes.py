@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tilenca import paths, variants
+from tilenca import drawings, paths, variants
 from tilenca.curriculum import build, labels_of
 from tilenca.drawings import load_training_task
 from tilenca.errors import UsageError
 from tilenca.exam import Aims, aims_of, set_exam
 from tilenca.recipes import RECIPES
-from tilenca.shapes import UNKNOWN, load_task
+from tilenca.shapes import UNKNOWN, Task, load_task
 
 L_SHAPE = '[[shape]]\nlabel = "L"\ngrid = """\n#.\n##\n"""\n'
 FULL = replace(RECIPES["full"], stretch=1.5)
@@ -59,6 +59,20 @@ def test_a_drawn_file_that_is_not_there_is_refused_by_name(tmp_path: Path) -> No
     file = write(tmp_path, '[sizes]\ndrawn = ["nowhere.toml"]')
     with pytest.raises(UsageError, match=r"nowhere\.toml"):
         load_training_task([file], 10.0, 20)
+
+
+def test_every_file_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[str] = []
+
+    def load(path: Path, max_classes: int | None = None) -> Task:
+        read.append(path.name)
+        return load_task(path, max_classes)
+
+    monkeypatch.setattr(drawings, "load_task", load)
+    load_training_task([paths.DEFAULT_SHAPES], 1.0, 20)
+    assert read == ["digits.toml"]
+    load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
+    assert read[1:] == ["digits.toml", "digits-3x3.toml"]
 
 
 def test_the_curriculum_has_every_kind_in_its_share_and_nothing_held_out() -> None:

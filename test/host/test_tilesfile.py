@@ -45,6 +45,8 @@ GOOD = '[[tile]]\nid = 1\nrow = 0\ncol = 0\nboard = "serial:A"\n'
         (GOOD.replace("id = 1", "id = 0"), ":8: id 0 is not from 1 to 255"),
         (GOOD.replace("id = 1", "id = 1.5"), ":8: id, row and col are whole numbers"),
         (GOOD.replace("serial:A", "COM3"), ":8: board is "),
+        (GOOD.replace("serial:A", "port:\\u0000"), ":8: board is "),
+        (GOOD.replace("row = 0", "row = 1000"), ":8: row and col are from -999 to 999"),
         (GOOD.replace("row", "line"), ":8: a .* has id, row, col and board"),
         ("[lab]\n", ": only .* belong here"),
         ("tile = \n", ": .*line 8"),

@@ -55,9 +55,23 @@ def make_environment(levels: Sequence[str]) -> None:
 def _make_venv() -> None:
     if belongs_here(VENV):
         return
+    refuse_link(VENV)
     say(f"making the virtual environment .venv (Python {sys.version.split()[0]})")
     interpreter = getattr(sys, "_base_executable", sys.executable)
     run([interpreter, "-m", "venv", "--clear", VENV], "cannot make .venv. Is the disk full or not writable?")
+
+
+def refuse_link(venv: Path) -> None:
+    """Does not touch an environment elsewhere: making one here would empty it.
+
+    Raises:
+        SetupError: `venv` is a link.
+    """
+    if venv.is_symlink():
+        raise SetupError(
+            f"{venv} is a link to {venv.readlink()}, which would be emptied; "
+            "remove the link and run the same again"
+        )
 
 
 def belongs_here(venv: Path) -> bool:
