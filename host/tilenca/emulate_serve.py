@@ -13,6 +13,7 @@ from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
+from tilenca.emulate_lag import Lag, told
 from tilenca.emulation import Emulation, port_name
 from tilenca.emulator import EmulatedTile
 from tilenca.errors import UsageError
@@ -22,8 +23,6 @@ STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
 )
 STEP_S = 0.002
-# An emulation that cannot keep up gives up the time it lost, rather than stop listening to its ports.
-MAX_LAG_S = 0.1
 READ_BYTES = 4096
 
 
@@ -151,14 +150,17 @@ def _keep_step(
     emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
 ) -> None:
     started = last = time.monotonic()
-    while seconds is None or last - started < seconds:
-        time.sleep(max(0.0, last + STEP_S - time.monotonic()))
-        now = time.monotonic()
-        emulation.pass_time(min(now - last, MAX_LAG_S))
-        on_slice()
-        last = now
-        for port in served:
-            port.exchange()
+    lag = Lag()
+    with told(lag) as tell:
+        while seconds is None or last - started < seconds:
+            time.sleep(max(0.0, last + STEP_S - time.monotonic()))
+            now = time.monotonic()
+            emulation.pass_time(lag.take(now - last))
+            on_slice()
+            last = now
+            for port in served:
+                port.exchange()
+            tell()
 
 
 def _remove(directory: Path) -> None:
