@@ -25,6 +25,7 @@ from tilenca.emulate_view import mismatch, take_picture, verdict
 from tilenca.emulation import Conditions, Emulation, firmware_settings, save_eeprom
 from tilenca.errors import UsageError, image_error
 from tilenca.picture import Picture, beside
+from tilenca.progress import Tell, show_progress
 from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.recording import Recorder, as_record
 from tilenca.shapes import Shape, Task, load_task
@@ -179,7 +180,8 @@ def run(args: argparse.Namespace) -> int:
         if args.watch:
             outcomes = [_watch(args, lay_out, shape, record) for shape in shapes]
         else:
-            outcomes = _run_all(args, lay_out, shapes, record)
+            with show_progress() as tell:
+                outcomes = _run_all(args, lay_out, shapes, record, tell)
     _print(args, outcomes)
     for note in sorted({note for outcome in outcomes for note in outcome.notes}):
         warn(f"tilenca: {note}")
@@ -288,7 +290,7 @@ def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]
 
 
 def _run_all(
-    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None, tell: Tell
 ) -> list[Outcome]:
     """Runs shapes side by side, since they know nothing of each other; results come in their order."""
     stopped = threading.Event()
@@ -297,16 +299,18 @@ def _run_all(
         started = time.monotonic()
         kept: list[str] = []
 
-        def keep(heard: list[Heard], on_slice: Callable[[], None]) -> None:
+        def keep(heard: list[Heard], on_slice: Callable[[], None], running: Emulation) -> None:
+            tell(shape.name, running.share_done(), f"{running.array.time_s:.2f} s emulated")
             if stopped.is_set():
                 raise KeyboardInterrupt
             on_slice()
             if record is not None:
                 kept.extend(_record_line(shape, line) for line in heard)
 
+        tell(shape.name, 0.0, "laying out")
         emulation = lay_out(shape)
         with emulation.array, _closely(emulation, args, stopped.is_set) as on_slice:
-            emulation.run(lambda _, heard: keep(heard, on_slice))
+            emulation.run(lambda _, heard: keep(heard, on_slice, emulation))
             return _outcome(emulation, started), kept
 
     outcomes = []
