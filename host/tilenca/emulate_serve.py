@@ -22,6 +22,7 @@ from tilenca.streams import warn
 STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
 )
+PSEUDO_TERMINALS = Path("/dev/pts")
 STEP_S = 0.002
 READ_BYTES = 4096
 
@@ -117,6 +118,7 @@ def serve(
             if created:
                 stack.callback(_remove, directory)
             stack.callback(os.close, _lock(directory))
+            _sweep(directory)
         except OSError as error:
             raise UsageError(
                 f"{directory}: {error.strerror}; give --serve a directory that can be written"
@@ -144,6 +146,13 @@ def _lock(directory: Path) -> int:
             f"{directory}: another `tilenca emulate` serves its tiles there; end it, or give --serve another"
         ) from None
     return descriptor
+
+
+def _sweep(directory: Path) -> None:
+    """Removes what a run that was killed has left: its pseudo-terminals may be somebody else's by now."""
+    for link in directory.glob("tile-*"):
+        if link.is_symlink() and link.readlink().parent == PSEUDO_TERMINALS:
+            link.unlink()
 
 
 def _keep_step(

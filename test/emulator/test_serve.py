@@ -106,10 +106,29 @@ def test_a_second_server_leaves_the_first_one_its_links(echo: Server, directory:
 def test_links_of_a_killed_run_are_replaced_and_other_files_kept(avr: Compile, directory: Path) -> None:
     directory.mkdir()
     (directory / "tile-01").symlink_to("/nowhere")
+    (directory / "tile-20").symlink_to("/dev/pts/9999")  # of more tiles than now
     (directory / "notes").write_text("mine")
     server = Server(avr(ECHO, '-DGREETING=""'), directory, "--seconds", "0.2")
     assert server.process.wait(TIMEOUT_S) == 0
     assert [path.name for path in directory.iterdir()] == ["notes"]
+
+
+def test_serving_needs_a_directory_of_its_own() -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "tilenca.cli",
+        "emulate",
+        "--shape",
+        "1",
+        "--seconds",
+        "0.1",
+        "--serve",
+        "",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "--serve needs a directory of its own" in done.stderr
 
 
 def hold_up(server: Server, directory: Path) -> None:
