@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.live import Live
 
 from tilenca import paths
-from tilenca.arguments import count, number, size, whole
+from tilenca.arguments import count, number, seed, size, whole
 from tilenca.emulate_debug import attend, debuggers, frames, waveforms
 from tilenca.emulate_faults import parse as parse_fault
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
@@ -63,7 +63,12 @@ class Outcome:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
-    add("--shape", action="append", metavar="NAME", help="a shape of the file; again for more (default: all)")
+    add(
+        "--shape",
+        action="append",
+        metavar="NAME",
+        help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
+    )
     add(
         "--shapes",
         type=Path,
@@ -100,7 +105,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="switched on within 0..S seconds (1.0)",
     )
-    add("--seed", type=int, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
+    add("--seed", type=seed, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
     add(
         "--fault",
         action="append",
@@ -111,7 +116,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "docs/EMULATOR.md)",
     )
     add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")
-    add("--eeprom", type=Path, metavar="DIR", help="one shape: load and keep each tile's EEPROM in DIR")
+    add(
+        "--eeprom",
+        type=Path,
+        metavar="DIR",
+        help="one shape: load each tile's EEPROM from DIR, and keep it there at the end, of --serve too",
+    )
     add("--vcd", type=Path, metavar="F", help="one shape: write the waveforms of its cables to F")
     add(
         "--pin",
@@ -191,6 +201,8 @@ def run(args: argparse.Namespace) -> int:
 def _check_combinations(args: argparse.Namespace) -> None:
     """Refuses what would be ignored; what excludes each other by itself, argparse knows."""
     serving = args.serve is not None
+    if serving and not args.serve.name:
+        raise UsageError("--serve needs a directory of its own for the tiles' links, such as tiles")
     for option, given in (("--record", args.record), ("--updates", args.updates)):
         if serving and given is not None:
             raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")

@@ -39,11 +39,20 @@ ALL = "all"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
-    add("--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="models/digits")
+    add(
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
+    )
     add("--shapes", type=Path, nargs="+", metavar="F", help="shape files (shapes/digits.toml)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
-        "--shape", action="append", metavar="NAME", help="a shape of the files; again for more (default: all)"
+        "--shape",
+        action="append",
+        metavar="NAME",
+        help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
     )
     what.add_argument(
         "--array",
