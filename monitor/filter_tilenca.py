@@ -9,12 +9,13 @@ HOST = str(Path(__file__).resolve().parents[1] / "host")
 if HOST not in sys.path:
     sys.path.append(HOST)  # PlatformIO may run in another environment than the package's
 
+from tilenca.boardtest import board_test_text  # noqa: E402
 from tilenca.telemetry import LineReader  # noqa: E402
 from tilenca.wording import printable, said  # noqa: E402
 
 
 class Tilenca(DeviceMonitorFilterBase):
-    """One line of words for every sentence; what is damaged is shown as such."""
+    """One line of words for every sentence; the board test's text as it is, what is damaged as such."""
 
     NAME = "tilenca"
 
@@ -27,6 +28,6 @@ class Tilenca(DeviceMonitorFilterBase):
         """The words of the sentences that `text` completes; whatever miniterm has made of other bytes."""
         heard = self._lines.feed(text.encode("ascii", "replace"))
         return "".join(
-            (f"DAMAGED {printable(raw)}" if sentence is None else said(sentence)) + "\r\n"
+            (said(sentence) if sentence else board_test_text(raw) or f"DAMAGED {printable(raw)}") + "\r\n"
             for raw, sentence in heard
         )

@@ -66,7 +66,11 @@ def size(text: str) -> Size:
 
 
 def _range(lowest: float, highest: float) -> str:
-    return f"from {lowest:.10g}" + ("" if highest == float("inf") else f" to {highest:.10g}")
+    return f"from {_shown(lowest)}" + ("" if highest == float("inf") else f" to {_shown(highest)}")
+
+
+def _shown(limit: float) -> str:
+    return str(limit) if isinstance(limit, int) else f"{limit:.10g}"
 
 
 # A thousandth of a second is the least that means anything to a tile.

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from tilenca.boardtest import BOARD_TEST
 from tilenca.portreader import PortReader
 from tilenca.protocol import HelloSentence, OtherVersionSentence, ask_command
 from tilenca.telemetry import Event, PortNews
@@ -41,17 +42,18 @@ class _Asked:
     def __init__(self, patience_s: float) -> None:
         self.answer: Answer | None = None
         self.ask_s = self.end_s = float("inf")
-        self._opened_s = 0.0
+        self._fresh_s = 0.0  # what was said before may be from before a reset
+        self._is_asked = False
         self._patience_s = patience_s
 
     def begin(self, now_s: float, ask_s: float) -> None:
         """The port is open."""
-        self._opened_s, self.ask_s, self.end_s = now_s, ask_s, now_s + self._patience_s
+        self._fresh_s, self.ask_s, self.end_s = now_s + STALE_S, ask_s, now_s + self._patience_s
 
     def asked(self, now_s: float) -> None:
         """The question was sent."""
         self.ask_s = now_s + AGAIN_S
-        self._opened_s = float("inf")
+        self._is_asked = True
 
     def take(self, event: Event, now_s: float) -> None:
         """Adds what was heard from its port."""
@@ -64,7 +66,11 @@ class _Asked:
             self.answer = Answer(event.sentence)
         elif isinstance(event.sentence, OtherVersionSentence):
             self.answer = Answer(problem=f"speaks protocol {event.sentence.version}")
-        elif event.sentence is not None and now_s >= self._opened_s + STALE_S:
+        elif now_s < self._fresh_s:
+            return
+        elif event.board_test:
+            self.answer = Answer(problem=BOARD_TEST)
+        elif event.sentence is not None and not self._is_asked:
             self.ask_s = min(self.ask_s, now_s)
 
 

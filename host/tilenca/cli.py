@@ -9,7 +9,7 @@ import importlib
 import sys
 from collections.abc import Sequence
 
-from tilenca import __version__
+from tilenca import __version__, paths
 from tilenca.arguments import Parser
 from tilenca.errors import TilencaError
 from tilenca.interrupts import ending_like_ctrl_c
@@ -67,6 +67,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         warn("tilenca: interrupted")
         return INTERRUPTED
+    except ModuleNotFoundError as error:
+        if (error.name or "tilenca").partition(".")[0] == "tilenca":
+            raise  # a defect of ours
+        warn(f"tilenca: {sys.executable} has no module '{error.name}'; first: {_activation()}")
+        return FAILED
     except BrokenPipeError:
         return FAILED  # The reader of our output (head, less) went away before the work was done.
     except OSError as error:
@@ -76,6 +81,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except MemoryError:
         warn("tilenca: out of memory; close other programs, or give it less to do")
         return FAILED
+
+
+def _activation() -> str:
+    activate = paths.ROOT / ".venv" / "bin" / "activate"
+    return f". {activate}" if activate.exists() else f"make -C {paths.ROOT} setup"
 
 
 def _run(arguments: list[str]) -> int:

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.live import Live
 
 from tilenca import paths
-from tilenca.arguments import count, number, size, whole
+from tilenca.arguments import count, number, seed, size, whole
 from tilenca.emulate_debug import attend, debuggers, frames, waveforms
 from tilenca.emulate_faults import parse as parse_fault
 from tilenca.emulate_serve import STOCK_BOOTLOADER, serve
@@ -25,6 +25,7 @@ from tilenca.emulate_view import mismatch, take_picture, verdict
 from tilenca.emulation import Conditions, Emulation, firmware_settings, save_eeprom
 from tilenca.errors import UsageError, image_error
 from tilenca.picture import Picture, beside
+from tilenca.progress import Tell, show_progress
 from tilenca.protocol import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.recording import Recorder, as_record
 from tilenca.shapes import Shape, Task, load_task
@@ -62,7 +63,12 @@ class Outcome:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
-    add("--shape", action="append", metavar="NAME", help="a shape of the file; again for more (default: all)")
+    add(
+        "--shape",
+        action="append",
+        metavar="NAME",
+        help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
+    )
     add(
         "--shapes",
         type=Path,
@@ -99,7 +105,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="switched on within 0..S seconds (1.0)",
     )
-    add("--seed", type=int, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
+    add("--seed", type=seed, default=0, metavar="N", help="decides clock errors and switch-on times (0)")
     add(
         "--fault",
         action="append",
@@ -110,7 +116,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "docs/EMULATOR.md)",
     )
     add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")
-    add("--eeprom", type=Path, metavar="DIR", help="one shape: load and keep each tile's EEPROM in DIR")
+    add(
+        "--eeprom",
+        type=Path,
+        metavar="DIR",
+        help="one shape: load each tile's EEPROM from DIR, and keep it there at the end, of --serve too",
+    )
     add("--vcd", type=Path, metavar="F", help="one shape: write the waveforms of its cables to F")
     add(
         "--pin",
@@ -179,7 +190,8 @@ def run(args: argparse.Namespace) -> int:
         if args.watch:
             outcomes = [_watch(args, lay_out, shape, record) for shape in shapes]
         else:
-            outcomes = _run_all(args, lay_out, shapes, record)
+            with show_progress() as tell:
+                outcomes = _run_all(args, lay_out, shapes, record, tell)
     _print(args, outcomes)
     for note in sorted({note for outcome in outcomes for note in outcome.notes}):
         warn(f"tilenca: {note}")
@@ -189,6 +201,8 @@ def run(args: argparse.Namespace) -> int:
 def _check_combinations(args: argparse.Namespace) -> None:
     """Refuses what would be ignored; what excludes each other by itself, argparse knows."""
     serving = args.serve is not None
+    if serving and not args.serve.name:
+        raise UsageError("--serve needs a directory of its own for the tiles' links, such as tiles")
     for option, given in (("--record", args.record), ("--updates", args.updates)):
         if serving and given is not None:
             raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")
@@ -288,7 +302,7 @@ def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]
 
 
 def _run_all(
-    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None, tell: Tell
 ) -> list[Outcome]:
     """Runs shapes side by side, since they know nothing of each other; results come in their order."""
     stopped = threading.Event()
@@ -297,16 +311,18 @@ def _run_all(
         started = time.monotonic()
         kept: list[str] = []
 
-        def keep(heard: list[Heard], on_slice: Callable[[], None]) -> None:
+        def keep(heard: list[Heard], on_slice: Callable[[], None], running: Emulation) -> None:
+            tell(shape.name, running.share_done(), f"{running.array.time_s:.2f} s emulated")
             if stopped.is_set():
                 raise KeyboardInterrupt
             on_slice()
             if record is not None:
                 kept.extend(_record_line(shape, line) for line in heard)
 
+        tell(shape.name, 0.0, "laying out")
         emulation = lay_out(shape)
         with emulation.array, _closely(emulation, args, stopped.is_set) as on_slice:
-            emulation.run(lambda _, heard: keep(heard, on_slice))
+            emulation.run(lambda _, heard: keep(heard, on_slice, emulation))
             return _outcome(emulation, started), kept
 
     outcomes = []

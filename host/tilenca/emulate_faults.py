@@ -81,8 +81,11 @@ def parse(text: str) -> FaultSpec:
     """
     match = SHAPE.fullmatch(text)
     kinds = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
-    if match is None or match[1] not in kinds:
+    word = re.match("[a-z]*", text)
+    if word is None or word[0] not in kinds:
         raise _complaint(text, f"it begins with none of {', '.join(kinds)}")
+    if match is None:
+        raise _complaint(text, f"after {word[0]} comes [=VALUE][@WHERE][:FROM[-TO]], times in seconds from 0")
     kind, value_text, where, from_text, to_text = match.groups()
     most = (LINK_KINDS | TILE_KINDS).get(kind)
     if (most is None) != (value_text is None):

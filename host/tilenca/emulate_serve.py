@@ -13,6 +13,7 @@ from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
+from tilenca.emulate_lag import Lag, told
 from tilenca.emulation import Emulation, port_name
 from tilenca.emulator import EmulatedTile
 from tilenca.errors import UsageError
@@ -21,9 +22,8 @@ from tilenca.streams import warn
 STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"
 )
+PSEUDO_TERMINALS = Path("/dev/pts")
 STEP_S = 0.002
-# An emulation that cannot keep up gives up the time it lost, rather than stop listening to its ports.
-MAX_LAG_S = 0.1
 READ_BYTES = 4096
 
 
@@ -118,6 +118,7 @@ def serve(
             if created:
                 stack.callback(_remove, directory)
             stack.callback(os.close, _lock(directory))
+            _sweep(directory)
         except OSError as error:
             raise UsageError(
                 f"{directory}: {error.strerror}; give --serve a directory that can be written"
@@ -147,18 +148,28 @@ def _lock(directory: Path) -> int:
     return descriptor
 
 
+def _sweep(directory: Path) -> None:
+    """Removes what a run that was killed has left: its pseudo-terminals may be somebody else's by now."""
+    for link in directory.glob("tile-*"):
+        if link.is_symlink() and link.readlink().parent == PSEUDO_TERMINALS:
+            link.unlink()
+
+
 def _keep_step(
     emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
 ) -> None:
     started = last = time.monotonic()
-    while seconds is None or last - started < seconds:
-        time.sleep(max(0.0, last + STEP_S - time.monotonic()))
-        now = time.monotonic()
-        emulation.pass_time(min(now - last, MAX_LAG_S))
-        on_slice()
-        last = now
-        for port in served:
-            port.exchange()
+    lag = Lag()
+    with told(lag) as tell:
+        while seconds is None or last - started < seconds:
+            time.sleep(max(0.0, last + STEP_S - time.monotonic()))
+            now = time.monotonic()
+            emulation.pass_time(lag.take(now - last))
+            on_slice()
+            last = now
+            for port in served:
+                port.exchange()
+            tell()
 
 
 def _remove(directory: Path) -> None:

@@ -183,11 +183,16 @@ class Emulation:
         elif isinstance(heard.sentence, HelloSentence):
             self.hello = heard.sentence
 
+    def share_done(self) -> float:
+        """How much of the run is done, 0 to 1; in updates, those of the least advanced tile."""
+        if self.conditions.seconds is not None:
+            return min(self.array.time_s / self.conditions.seconds, 1.0)
+        done = min(map(self._updates, self._standing()), default=0)
+        return min(done / self.conditions.updates, 1.0)
+
     def done(self) -> bool:
         """Whether it has run for as long as its conditions ask."""
-        if self.conditions.seconds is not None:
-            return self.array.time_s >= self.conditions.seconds
-        return min(map(self._updates, self._standing()), default=0) >= self.conditions.updates
+        return self.share_done() >= 1.0
 
     def run(self, on_slice: Callable[["Emulation", list[Heard]], None]) -> None:
         """Runs until done, and calls `on_slice` after every slice of it.

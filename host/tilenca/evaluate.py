@@ -55,10 +55,19 @@ class Outcome:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
     parser.add_argument(
-        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="models/digits"
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
     )
     parser.add_argument(
-        "--shapes", type=Path, nargs="+", default=[paths.DEFAULT_SHAPES], metavar="F", help="shape files"
+        "--shapes",
+        type=Path,
+        nargs="+",
+        default=[paths.DEFAULT_SHAPES],
+        metavar="F",
+        help="shape files (shapes/digits.toml)",
     )
     parser.add_argument(
         "--engine",

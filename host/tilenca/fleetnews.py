@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from tilenca.boardtest import BOARD_TEST
 from tilenca.fleetview import port_words
 from tilenca.linkhealth import FAILING, WELL
 from tilenca.protocol import (
@@ -48,6 +49,8 @@ class Reporter:
         if isinstance(event, PortNews):
             return [(f"port {port_words(event)}", not event.is_open)]
         match event.sentence:
+            case None if event.board_test:
+                return [(f"{BOARD_TEST}: {event.board_test}", "FAIL" in event.board_test)]
             case None:
                 return [(f"damaged: {printable(event.raw)}", True)]
             case HelloSentence() as hello:

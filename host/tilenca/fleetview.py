@@ -7,6 +7,7 @@ from rich.console import OverflowMethod
 from rich.table import Table
 from rich.text import Text
 
+from tilenca.boardtest import BOARD_TEST
 from tilenca.fleetgrid import trouble
 from tilenca.tables import table
 from tilenca.telemetry import Event, Fleet, PortNews, TileView
@@ -30,7 +31,7 @@ def log_line(event: Event) -> str:
     if isinstance(event, PortNews):
         return f"{head} - PORT {port_words(event)}"
     if event.sentence is None:
-        return f"{head} - DAMAGED {printable(event.raw)}"
+        return f"{head} - {event.board_test or f'DAMAGED {printable(event.raw)}'}"
     return f"{head} {said(event.sentence)}"
 
 
@@ -59,7 +60,11 @@ def cells(view: TileView, now_s: float) -> list[str]:
     note = (view.reason if not view.is_open else "") or (
         f"speaks protocol {view.other_version}: flash it" if view.other_version else ""
     )
-    note = note or ("silent" if quiet else "") or (view.error.code if view.error else "")
+    note = (
+        note
+        or (BOARD_TEST if view.board_test else "silent" if quiet else "")
+        or (view.error.code if view.error else "")
+    )
     return [
         view.port,
         _or_dash(view.tile_id),
@@ -99,7 +104,7 @@ def summary(tiles: Iterable[TileView]) -> str:
             str(view.sentences),
             str(view.damaged),
             str(view.outages),
-            view.reason,
+            view.reason or (BOARD_TEST if view.board_test else ""),
         ]
         for view in tiles
     ]

@@ -12,6 +12,8 @@ APPLICATION_BYTES = 248 * 1024
 # Some Mega bootloaders take three exclamation marks in the data for a call of their monitor, and hang.
 POISON = b"!!!"
 
+NO_IMAGE = "not an Intel HEX file; name the firmware.hex that `pio run` builds"
+
 DATA, END, SEGMENT, START_SEGMENT, LINEAR, START_LINEAR = range(6)
 
 
@@ -88,15 +90,17 @@ def check_image(path: Path) -> Image:
             hangs a bootloader; see `image_error`.
     """
     try:
-        memory = parse_hex(path.read_text(encoding="ascii"))
+        text = path.read_text(encoding="ascii")
     except OSError as error:
         raise image_error(
             f"{path}: {error.strerror}; build it with `pio run`, or name an image with --hex"
         ) from error
     except UnicodeDecodeError as error:
-        raise image_error(
-            f"{path}: not an Intel HEX file; name the firmware.hex that `pio run` builds"
-        ) from error
+        raise image_error(f"{path}: {NO_IMAGE}") from error
+    if not text.lstrip().startswith(":"):
+        raise image_error(f"{path}: {NO_IMAGE}")
+    try:
+        memory = parse_hex(text)
     except HexError as error:
         raise image_error(f"{path}:{error}; build it again with `pio run`") from error
     if not memory:

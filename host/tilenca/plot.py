@@ -23,7 +23,11 @@ MAX_STEPS = 500
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
     parser.add_argument(
-        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="models/digits"
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
     )
     parser.add_argument(
         "--out",
@@ -39,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--film", type=Path, metavar="FILE", help="all steps in one .png or .svg, or an animated .gif"
     )
     film.add_argument(
-        "--shape", metavar="NAME", help="the shape to film, such as 4, or 7@2 for its second drawing"
+        "--shape", metavar="NAME", help="the shape to film, such as 4, or 4@2 if the label has two drawings"
     )
     film.add_argument("--shapes", type=Path, metavar="F", help="the file it is in (shapes/digits.toml)")
     film.add_argument(

@@ -7,6 +7,7 @@ anything else, such as tensors (`tilenca.tensors`), which follows the same sched
 """
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -196,12 +197,15 @@ class Simulator:
         else:
             self._life = RoundByRound(engine, setup, self.states, self.shown)
 
-    def run(self, steps: int, record: bool = False) -> Course:
+    def run(
+        self, steps: int, record: bool = False, tell: Callable[[int], None] = lambda done: None
+    ) -> Course:
         """Lives on for some steps.
 
         Args:
             steps: how many.
             record: whether to keep what every tile shows after each step.
+            tell: called now and then with the number of steps done.
         """
         right = np.empty((steps, len(self.batch.starts)), np.float32)
         shown = np.empty((steps, self.cells), np.int8) if record else None
@@ -209,6 +213,7 @@ class Simulator:
         for step in range(0, steps, stride):
             part = slice(step, step + stride)
             self._life.run(right[part], None if shown is None else shown[part], self.threads)
+            tell(min(step + stride, steps))
         return Course(right, shown)
 
     @property

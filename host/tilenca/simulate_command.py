@@ -21,6 +21,7 @@ from tilenca.errors import UsageError
 from tilenca.glyphs import BLANK, colour_of_class, glyph
 from tilenca.modelfile import Model, load_model
 from tilenca.picture import Picture, beside
+from tilenca.progress import Tell, show_progress
 from tilenca.shapes import Shape
 from tilenca.simulate import Conditions, Simulator, processors
 from tilenca.tables import table
@@ -38,11 +39,20 @@ ALL = "all"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
-    add("--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="models/digits")
+    add(
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
+    )
     add("--shapes", type=Path, nargs="+", metavar="F", help="shape files (shapes/digits.toml)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
-        "--shape", action="append", metavar="NAME", help="a shape of the files; again for more (default: all)"
+        "--shape",
+        action="append",
+        metavar="NAME",
+        help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
     )
     what.add_argument(
         "--array",
@@ -82,9 +92,11 @@ def run(args: argparse.Namespace) -> int:
         return 0
     runs = args.runs or (1 if args.array else RUNS)
     reports = []
-    for number in numbers:
-        life = _simulator(args, model, drawings, np.full(runs, number), random)
-        reports.append(_report(args, life, drawings, number))
+    with show_progress() as tell:
+        for number in numbers:
+            tell(drawings.shapes[number].name, 0.0, "laying out")
+            life = _simulator(args, model, drawings, np.full(runs, number), random)
+            reports.append(_report(args, life, drawings, number, tell))
     if args.json:
         print(json.dumps(reports[0] if len(reports) == 1 else {"shapes": reports, **_speed(reports)}))
     else:
@@ -144,9 +156,17 @@ def _simulator(
     return Simulator(FastEngine(model), drawings, chosen, conditions, random, threads=args.threads)
 
 
-def _report(args: argparse.Namespace, life: Simulator, drawings: Drawings, number: int) -> dict[str, Any]:
+def _report(
+    args: argparse.Namespace, life: Simulator, drawings: Drawings, number: int, tell: Tell
+) -> dict[str, Any]:
+    name, steps = drawings.shapes[number].name, args.steps
+
+    def tell_step(done: int) -> None:
+        tell(name, done / steps, f"{done} of {_steps(steps)}")
+
     started_s = time.perf_counter()
-    course = life.run(args.steps)
+    tell_step(0)
+    course = life.run(steps, tell=tell_step)
     seconds = time.perf_counter() - started_s
     shown = life.shown[life.alive]
     right: dict[str, Any] = {
@@ -155,10 +175,10 @@ def _report(args: argparse.Namespace, life: Simulator, drawings: Drawings, numbe
         "steps_to_agreement": settle_times(course.settled),
     }
     return {
-        "shape": drawings.shapes[number].name,
+        "shape": name,
         "file": drawings.sources[drawings.groups[number]]["file"],
         "tiles": len(drawings.shapes[number].cells),
-        "steps": args.steps,
+        "steps": steps,
         "runs": len(life.batch.starts),
         **(dict.fromkeys(right) if args.array else right),
         "shown": {
@@ -183,7 +203,7 @@ def _print(args: argparse.Namespace, reports: list[dict[str, Any]]) -> None:
     if args.array:
         shown = ", ".join(f"{part:.1%} {label}" for label, part in reports[0]["shown"].items())
         tiles = f"{reports[0]['tiles']:,} tiles"
-        print(f"{reports[0]['shape']}: {tiles}; after {args.steps} steps they show {shown}")
+        print(f"{reports[0]['shape']}: {tiles}; after {_steps(args.steps)} they show {shown}")
     else:
         rows = [
             [
@@ -202,6 +222,10 @@ def _print(args: argparse.Namespace, reports: list[dict[str, Any]]) -> None:
         f"{speed['cell_updates']:,} cell updates in {speed['seconds']:.2f} s, "
         f"{speed['updates_per_second'] / 1e6:.2f} million per second; threads: at most {threads}"
     )
+
+
+def _steps(count: int) -> str:
+    return "1 step" if count == 1 else f"{count} steps"
 
 
 def picture_of(shape: Shape, labels: tuple[str, ...], shown: NDArray[np.int8]) -> Picture:
@@ -228,4 +252,4 @@ def _watch(life: Simulator, shape: Shape, labels: tuple[str, ...], steps: int) -
                     now = life.shown[tile]
                     what = "nothing" if now == DARK else labels[now]
                     print(f"step {step:4}  {shape.name}: tile {tile + 1} shows {what}")
-    print(f"{shape.name}: {right:.0%} of the living tiles show {shape.label} after {steps} steps")
+    print(f"{shape.name}: {right:.0%} of the living tiles show {shape.label} after {_steps(steps)}")

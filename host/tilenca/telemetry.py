@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from tilenca.boardtest import board_test_text
 from tilenca.linkhealth import LinkHealth
 from tilenca.protocol import (
     MAX_SENTENCE,
@@ -55,7 +56,7 @@ class LineReader:
         lines = []
         for piece in filter(None, map(bytes.strip, pieces)):
             found = _lines(piece)
-            if not self._joined_midway or piece.startswith(b"$"):
+            if not self._joined_midway or piece.startswith(b"$") or board_test_text(piece):
                 lines += found
             self._joined_midway = False
         return lines
@@ -78,13 +79,18 @@ class Heard:
         time_s: when, in seconds since 1970.
         port: whence.
         raw: the line's bytes, without its end.
-        sentence: what it says; None if it is damaged.
+        sentence: what it says; None if it is damaged, or the board test's.
     """
 
     time_s: float
     port: str
     raw: bytes
     sentence: Sentence | None
+
+    @property
+    def board_test(self) -> str | None:
+        """What the board test says in this line; None if it is not of it."""
+        return board_test_text(self.raw)
 
 
 @dataclass(frozen=True)
@@ -141,6 +147,7 @@ class TileView:
         time: its last report of its time and memory.
         error: the last thing it said to be wrong since its HELLO.
         other_version: the protocol it speaks, if it is not ours.
+        board_test: whether its last line was the board test's.
     """
 
     port: str
@@ -159,6 +166,7 @@ class TileView:
     error: ErrorSentence | None = None
     other_version: int | None = None
     tile_id: int | None = None
+    board_test: bool = False
 
     def total(self, counter: str) -> int | None:
         """The sum over the sides of a counter of `LinkSentence`; None before the first report."""
@@ -171,9 +179,11 @@ class TileView:
             self.is_open, self.reason = event.is_open, event.reason
             self.was_open |= event.is_open
         elif event.sentence is None:
-            self.damaged += 1
+            self.board_test = event.board_test is not None
+            self.damaged += not self.board_test
         else:
             self.sentences += 1
+            self.board_test = False
             self.heard_s = event.time_s
             self._hear(event.sentence)
 

@@ -41,7 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[paths.DEFAULT_SHAPES],
         metavar="F",
-        help="shape files, one task; the first may say at what other sizes its drawings keep their class",
+        help="shape files, one task; the first may say at what other sizes its drawings keep their class "
+        "(shapes/digits.toml)",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
     parser.add_argument(
@@ -52,12 +53,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=seed, default=1, metavar="N", help="same seed, same model (default 1)")
     parser.add_argument(
-        "--seeds", type=whole(1, 64), metavar="K", help="train seeds N to N+K-1, keep the best (the recipe's)"
+        "--seeds",
+        type=whole(1, 64),
+        metavar="K",
+        help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
     )
     parser.add_argument(
         "--jobs", type=whole(1, 64), metavar="J", help="how many of them at once (one for each processor)"
     )
-    parser.add_argument("--iterations", type=count, metavar="N", help="instead of the recipe's")
+    parser.add_argument(
+        "--iterations", type=count, metavar="N", help="so many, instead of as many as the recipe says"
+    )
     parser.add_argument(
         "--state",
         type=whole(2, MAX_CHANNELS),
@@ -66,11 +72,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="channels of the state (default 21)",
     )
     parser.add_argument(
-        "--hidden", type=whole(1, MAX_WIDTH), metavar="H", help="width of both hidden layers (the recipe's)"
+        "--hidden",
+        type=whole(1, MAX_WIDTH),
+        metavar="H",
+        help="width of both hidden layers (as the recipe says)",
     )
     parser.add_argument("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
     parser.add_argument(
-        "--validation-runs", type=count, metavar="N", help="runs per drawing, instead of the recipe's"
+        "--validation-runs",
+        type=count,
+        metavar="N",
+        help="runs per drawing when it is measured, instead of as many as the recipe says",
     )
     parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
     parser.add_argument(
@@ -287,8 +299,8 @@ def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seco
     missed = [row for row in metrics["rows"] if not row["holds"]]
     print(f"model in {where}, {seconds:.0f} s; {metrics['targets_held']} targets held")
     for row in missed:
-        worst = row["worst"]
+        worst, least = row["worst"], f", wanted {row['floor']:.1%}" if row["floor"] else ""
         print(
-            f"  missed: {row['name']}, @{row['steps']}: {row['share']:.4f}, wanted {row['target']}; "
-            f"{worst['shape']}: {worst['share']:.4f}, wanted {row['floor']}"
+            f"  missed: {row['name']}, after {row['steps']} steps: {row['share']:.1%} of the runs, "
+            f"wanted {row['target']:.1%}; the worst drawing, {worst['shape']}: {worst['share']:.1%}{least}"
         )

@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from vandals import Plug
 
+from tilenca.boardtest import board_test_text
 from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array, EmulatedTile, LinkFault
 from tilenca.paths import ROOT
+from tilenca.telemetry import LineReader
 
 SIDES = (NORTH, EAST, SOUTH, WEST)
 STEP_S = 0.002
@@ -95,6 +97,23 @@ def test_the_button_passes_by_being_pressed_and_goes_to_the_next_step(elf: Path)
     tile.write_serial(b"b?")
     run(array, 0.1)
     assert any(line == "button: open" for line in lines(tile))
+
+
+def test_the_host_knows_every_line_for_the_board_test_s(elf: Path) -> None:
+    array = Array(elf, 2, [(0, EAST, 1, WEST)])
+    tile = array[0]
+    tile.press_button()
+    tile.hold_pin(*tile.side_pin(SOUTH, receiving=True), False)
+    for letter in "dlcsb?":
+        tile.write_serial(letter.encode())
+        run(array, 2.0)
+    found = LineReader().feed(tile.read_serial())
+    said = [board_test_text(raw) for raw, sentence in found if sentence is None]
+    assert len(said) == len(found) > 20
+    assert None not in said, [raw for raw, _ in found]
+    beginnings = {line.partition(":")[0] for line in said if line}
+    sides = {f"side {side}" for side in "NESW"}
+    assert beginnings == {"board test", "button", "display", "LEDs", "colours"} | sides
 
 
 def test_a_button_that_is_stuck_is_named_at_the_start(elf: Path) -> None:

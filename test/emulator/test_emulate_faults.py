@@ -103,6 +103,9 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(
     assert records[1] != records[2]
 
 
+BROKEN_OFF = (("=", "loss="), ("@", "reset@1:-1"), ("@", "off@1:0-"), ("@", "cut@"))
+
+
 @pytest.mark.parametrize(
     ("spec", "fact"),
     [
@@ -121,6 +124,8 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(
         ("cut@1-2:3-2", "it ends before it begins"),
         ("reset@1:1-2", "reset has no end"),
         ("cut@1-2:soon", "'soon' is no time in seconds"),
+        ("losses=1", "it begins with none of loss, flip, delay"),
+        *((spec, f"after {spec.partition(mark)[0]} comes [=VALUE]") for mark, spec in BROKEN_OFF),
     ],
 )
 def test_a_fault_that_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], spec: str, fact: str) -> None:

@@ -1,11 +1,13 @@
 """Emulated tiles behind pseudo-terminals: real programs on the other side."""
 
 import os
+import re
 import select
 import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,15 +28,18 @@ int main(void) {
 
 
 class Server:
-    def __init__(self, elf: Path, directory: Path, *options: str) -> None:
+    def __init__(self, elf: Path, directory: Path, *options: str, stderr: int = subprocess.PIPE) -> None:
         shapes = directory.parent / "pair.toml"
         shapes.write_text('[[shape]]\nlabel = "1"\ngrid = "##"\n')
         command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shapes", shapes, "--elf", elf]
         self.process = subprocess.Popen(
             [*map(str, command), "--boot-spread", "0", "--serve", str(directory), *options],
-            stderr=subprocess.PIPE,
+            stderr=stderr,
+            env=os.environ | {"TERM": "xterm"},
             text=True,
         )
+        if stderr != subprocess.PIPE:
+            return
         assert self.process.stderr is not None
         assert "serving 2 tiles" in self.process.stderr.readline()
 
@@ -62,6 +67,14 @@ def read(port: int, count: int) -> bytes:
         ready, _, _ = select.select([port], [], [], TIMEOUT_S)
         assert ready, f"only {data!r} came"
         data += os.read(port, count - len(data))
+    return data
+
+
+def read_until(port: int, wanted: bytes) -> bytes:
+    """What comes from a port until `wanted` is among it."""
+    data = b""
+    while wanted not in data:
+        data += read(port, 1)
     return data
 
 
@@ -93,10 +106,63 @@ def test_a_second_server_leaves_the_first_one_its_links(echo: Server, directory:
 def test_links_of_a_killed_run_are_replaced_and_other_files_kept(avr: Compile, directory: Path) -> None:
     directory.mkdir()
     (directory / "tile-01").symlink_to("/nowhere")
+    (directory / "tile-20").symlink_to("/dev/pts/9999")  # of more tiles than now
     (directory / "notes").write_text("mine")
     server = Server(avr(ECHO, '-DGREETING=""'), directory, "--seconds", "0.2")
     assert server.process.wait(TIMEOUT_S) == 0
     assert [path.name for path in directory.iterdir()] == ["notes"]
+
+
+def test_serving_needs_a_directory_of_its_own() -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "tilenca.cli",
+        "emulate",
+        "--shape",
+        "1",
+        "--seconds",
+        "0.1",
+        "--serve",
+        "",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "--serve needs a directory of its own" in done.stderr
+
+
+def hold_up(server: Server, directory: Path) -> None:
+    """To its tiles it is as if the machine were busy with something else for two seconds."""
+    port = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
+    assert read(port, 6) == b"hello "  # so it runs
+    os.close(port)
+    server.process.send_signal(signal.SIGSTOP)
+    time.sleep(2.0)
+    server.process.send_signal(signal.SIGCONT)
+
+
+def test_tiles_that_fall_behind_real_time_say_how_far(echo: Server, directory: Path) -> None:
+    hold_up(echo, directory)
+    port = os.open(directory / "tile-02", os.O_RDWR | os.O_NOCTTY)
+    assert read(port, 6) == b"hello "
+    os.close(port)
+    assert echo.stop() == 130
+    assert echo.process.stderr is not None
+    behind = re.search(r"the tiles are ([\d.]+) s behind real time: they lived", echo.process.stderr.read())
+    assert behind is not None
+    assert float(behind[1]) > 1.5
+
+
+def test_a_terminal_is_told_of_the_lag_while_it_lasts(avr: Compile, directory: Path) -> None:
+    master, slave = os.openpty()
+    server = Server(avr(ECHO, '-DGREETING="hello "'), directory, stderr=slave)
+    os.close(slave)
+    read_until(master, b"serving 2 tiles")
+    hold_up(server, directory)
+    read_until(master, b"behind real time")
+    assert server.process.poll() is None
+    server.stop()
+    os.close(master)
 
 
 def test_without_resets_a_tile_runs_on(avr: Compile, directory: Path) -> None:

@@ -12,6 +12,7 @@ from typing import Self
 import pytest
 
 from tilenca.asking import SILENT, STALE_S, ask_all
+from tilenca.boardtest import BOARD_TEST
 from tilenca.commanding import ATTEMPTS, Reply, command_all
 from tilenca.portlock import port_lock
 from tilenca.portreader import PortReader
@@ -100,6 +101,12 @@ def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack
     assert answers[asked.port].hello == HELLO
     assert asked.heard[0] == ask_command()
     assert time.monotonic() - began_s >= STALE_S, "what was said before a reset proves nothing"
+
+
+def test_a_board_under_test_is_told_from_one_that_is_silent(stack: ExitStack) -> None:
+    tested = stack.enter_context(Device(b"display: only segment a PH4\r\n"))
+    assert ask_all([tested.port], "a test")[tested.port].problem == BOARD_TEST
+    assert not tested.heard, "letters are commands to it"
 
 
 def ack(line: bytes, count: int) -> bytes:

@@ -52,6 +52,16 @@ def test_every_launcher_is_its_command(launcher: Path) -> None:
     assert "usage: tilenca" in done.stdout
 
 
+@pytest.mark.parametrize("launcher", ["flash_all", "monitor"])
+def test_a_python_without_the_packages_is_told_in_one_line(launcher: str) -> None:
+    command = [sys.executable, "-S", str(paths.ROOT / "host" / f"{launcher}.py"), "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"tilenca: {sys.executable} has no module '")
+    assert done.stderr.endswith((".venv/bin/activate\n", " setup\n"))
+    assert done.stderr.count("\n") == 1
+
+
 def test_commands_without_tensors_do_not_import_torch() -> None:
     program = (
         "import importlib, sys\n"

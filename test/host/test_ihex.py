@@ -49,12 +49,13 @@ def test_segment_addresses_are_in_units_of_16() -> None:
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("", "truncated"),
         (image(b"abc").replace(END, ""), "truncated"),
         (image(b"abc").replace("61", "62"), ":2: wrong checksum"),
         (record(0, 0, b"ab") + record(1, 0, b"c") + END, ":2: address 0x1 is given twice"),
         (record(0, 9, b"") + END, ":1: unknown record type 9"),
-        ("\x7fELF\n", ":1: not an Intel HEX record"),
+        ("\x7fELF\n", ": not an Intel HEX file; name the firmware.hex that `pio run` builds"),
+        ("# tilenca\n", ": not an Intel HEX file"),
+        ("", ": not an Intel HEX file"),
         (":0\n", ":1: not an Intel HEX record"),
         (":0000\n", ":1: a record of the wrong length"),
         (END, "without a byte"),

@@ -46,6 +46,12 @@ def test_damaged_lines_are_shown_and_the_next_is_read(decoder: Any) -> None:
     assert good == again == "tile 7 TILE shows 4 update 12 up 1.2 s links N-SW"
 
 
+def test_what_the_board_test_says_passes_whole(decoder: Any) -> None:
+    line = "side N: FAIL, heard nothing: no plug, no tile, or a broken line to PD2\r\n"
+    shown = "".join(decoder.rx(character) for character in line + "butt\ufffdn: open\r\n" + line)
+    assert shown == f"{line}DAMAGED butt?n: open\r\n{line}"
+
+
 def test_it_is_the_filter_that_the_project_asks_for(decoder: Any) -> None:
     assert decoder.NAME == "tilenca"
     assert f"monitor_filters = {decoder.NAME}\n" in (paths.ROOT / "platformio.ini").read_text()

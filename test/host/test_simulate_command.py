@@ -1,6 +1,11 @@
 """`tilenca simulate`: what it prints, and what it refuses."""
 
 import json
+import os
+import re
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +85,34 @@ def test_ten_thousand_tiles_in_one_array(capsys: pytest.CaptureFixture[str]) -> 
     assert report["cells_right"] is report["total_agreement"] is report["steps_to_agreement"] is None
     assert 29_000 < report["cell_updates"] < 31_000
     assert 0.9 < sum(report["shown"].values()) <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("words", "note", "result"),
+    [
+        (("simulate", "--array", "30x30", "--steps", "1"), b"1 of 1 step", b"after 1 step they show"),
+        (("emulate", "--shape", "1", "--seconds", "0.2"), b"0.20 s emulated", b"5 tiles, 0.2 s emulated"),
+    ],
+)
+def test_a_terminal_is_told_how_far_it_is(words: tuple[str, ...], note: bytes, result: bytes) -> None:
+    master, slave = os.openpty()
+    command = [sys.executable, "-m", "tilenca.cli", *words]
+    terminal = os.environ | {"TERM": "xterm"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=slave, env=terminal) as process:
+        os.close(slave)
+        shown = b""
+        with suppress(OSError):  # as the other end is closed
+            while data := os.read(master, 4096):
+                shown += data
+        printed, _ = process.communicate(timeout=60)
+    os.close(master)
+    assert note in re.sub(rb"\x1b\[[0-9;]*m", b"", shown)
+    assert result in printed
+
+
+def test_a_pipe_gets_no_bars() -> None:
+    command = [sys.executable, "-m", "tilenca.cli", "simulate", "--array", "30x30", "--steps", "1"]
+    assert subprocess.run(command, capture_output=True, timeout=60, check=True).stderr == b""
 
 
 def test_text_has_a_line_for_each_shape_and_the_speed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,6 +6,9 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tilenca.boardtest import BOARD_TEST
+from tilenca.fleetnews import Reporter
+from tilenca.fleetview import cells, log_line, summary
 from tilenca.protocol import (
     MAX_SENTENCE,
     PROTOCOL_VERSION,
@@ -184,6 +187,21 @@ def test_damage_and_outages_are_counted() -> None:
         fleet.take(event)
     view = fleet.tiles["p"]
     assert (view.outages, view.damaged, view.sentences, view.is_open, view.reason) == (1, 1, 0, True, "")
+
+
+def test_a_board_under_test_is_no_damage_and_is_named_until_it_is_a_tile_again() -> None:
+    line = "side N: FAIL, heard nothing: no plug, no tile, or a broken line to PD2"
+    fleet, news = Fleet(), Heard(2.0, "p", line.encode(), None)
+    fleet.take(PortNews(1.0, "p", is_open=True))
+    fleet.take(news)
+    view = fleet.tiles["p"]
+    assert view.damaged == 0
+    assert log_line(news).endswith(f" p - {line}")
+    assert [(told.text, told.bad) for told in Reporter(fleet).take(news)] == [(f"{BOARD_TEST}: {line}", True)]
+    assert cells(view, 2.0)[-1] == BOARD_TEST
+    assert BOARD_TEST in summary([view])
+    fleet.take(Heard(3.0, "p", b"", TILE))
+    assert cells(view, 3.0)[-1] == ""
 
 
 def test_json_has_tile_port_time_type_and_fields() -> None:

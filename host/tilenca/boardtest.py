@@ -1,0 +1,13 @@
+"""The plain text of the firmware that tests a board (docs/BOARD_TEST.md). Standard library only."""
+
+import re
+
+BOARD_TEST = "runs the board test"
+
+# How each line of firmware/src/board_test begins; the rest is plain text.
+_LINE = re.compile(rb"(?:board test|button|colours|display|LEDs|side [NESW]): [ -~]+")
+
+
+def board_test_text(raw: bytes) -> str | None:
+    """What the board test says in a line; None if the line is not of it."""
+    return raw.decode("ascii") if _LINE.fullmatch(raw) else None
