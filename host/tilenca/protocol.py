@@ -26,8 +26,7 @@ HIDDEN_MAX = 127
 MESSAGE_OFFSET = 128
 
 # Silence (section 2).
-SILENT_PERIODS = 4
-SILENT_EXTRA_MS = 20
+SILENT_PERIODS = 6
 
 # Telemetry (section 3).
 HOST_BAUD = 115200

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.protocol import SILENT_PERIODS
 from tilenca.tissue import TICKS, UNITS_PER_STEP, Setup, units
 
-SILENT_STEPS = 4
 NEVER = Fraction(-(10**9))
 
 Update = Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]]  # (C,) state and (5 C,) inputs to (C,) state
@@ -189,4 +189,4 @@ class SlowRun:
 
     def _silent(self, sender: int, receiver: int) -> bool:
         tracked = self.setup.fault != "none" or (self.setup.loss > 0 and not self.setup.zeros)
-        return tracked and self.now - self.heard_at.get((sender, receiver), NEVER) > SILENT_STEPS
+        return tracked and self.now - self.heard_at.get((sender, receiver), NEVER) > SILENT_PERIODS
