@@ -72,13 +72,17 @@ class Cycles:
     floating: int | None
 
 
-def any_model(size: Dimensions, narrow: bool) -> Model:
-    """Weights and biases that leave no activation at zero, with sums of 16 or of 24 bits throughout."""
+def any_model(size: Dimensions, narrow: bool, zeros: bool = False) -> Model:
+    """Weights and biases that leave no activation at zero, with sums of 16 or of 24 bits throughout.
+
+    With `zeros`, every other activation is.
+    """
     random = np.random.default_rng(0)
     integer: dict[str, NDArray[Any]] = {}
     for name, shape in size.shapes().items():
         if name.startswith("b"):
             integer[name] = np.full(shape, 8000 if narrow else 32767, np.int16)
+            integer[name][1 if zeros else shape[0] :: 2] *= -1
         else:
             weights = random.integers(-1, 2, shape) if narrow else random.integers(1, 21, shape)
             integer[name] = weights.astype(np.int8)
@@ -89,11 +93,12 @@ def any_model(size: Dimensions, narrow: bool) -> Model:
     return model
 
 
-def dense(size: Dimensions) -> Given:
-    """One cell, no message of which is zero; half of them are negative."""
+def dense(size: Dimensions, zeros: bool = False) -> Given:
+    """One cell, no message of which is zero, or every other one; half of the rest are negative."""
     random = np.random.default_rng(1)
     sizes = random.integers(1, 128, (1, 5 * size.channels))
     signs = random.choice([-1, 1], sizes.shape)
+    sizes[:, 1 if zeros else sizes.shape[1] :: 2] = 0
     return Given((sizes * signs).astype(np.int8), np.zeros((1, size.channels), np.int16))
 
 
@@ -162,6 +167,8 @@ def rows() -> list[tuple[str, ...]]:
             what = f"hidden {width}, sums of {16 if narrow else 24} bits, nothing is zero"
             with_float = not narrow and width <= FLOAT_WIDTH
             found.append(row(what, size, measure(any_model(size, narrow), dense(size), with_float)))
+        what = f"hidden {width}, sums of 16 bits, every other value is zero"
+        found.append(row(what, size, measure(any_model(size, True, zeros=True), dense(size, zeros=True))))
         if width in TRAINED:
             model = load_model(ROOT / "models" / TRAINED[width])
             for name, steps in (("young", STEPS_YOUNG), ("settled", STEPS_SETTLED)):

@@ -107,6 +107,8 @@ def render(model: Model) -> dict[Path, str]:
                 "inputs": inputs,
                 "outputs": outputs,
                 "lines": list(_lines(layer)),
+                "narrow_only": str(all(one.narrow for one in layer)).lower(),
+                "rounding": "kHiddenRounding" if number < len(widths) else "0",
             }
         )
     context = {"model_id": model.model_id, "size": model.dimensions, "layers": layers}

@@ -33,11 +33,11 @@ ACTIVE = (1.0, 0.6, 0.4)
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the
 # emulated chip and fitted by `python tools/cycles.py`, which prints them anew when the firmware changes.
-CYCLES_PER_MAC = 8.4625
-CYCLES_PER_SKIPPED = 1.3621
-CYCLES_PER_CHANNEL = 2484.5
-CYCLES_PER_UPDATE = 45782.0
-CYCLES_PER_MS = 1482.6  # updating or not
+CYCLES_PER_MAC = 8.3783
+CYCLES_PER_SKIPPED = 1.3744
+CYCLES_PER_CHANNEL = 2504.0
+CYCLES_PER_UPDATE = 45055.0
+CYCLES_PER_MS = 1505.8  # updating or not
 
 CLOCK_PER_MS = 16_000
 BITS_PER_BYTE = 10

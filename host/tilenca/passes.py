@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tilenca.modelfile import Model
 
 PASS_OUTPUTS = 8
-HEAD_BYTES = 1 + 2 * PASS_OUTPUTS  # width of the sums, biases
+HEAD_BYTES = 1 + 2 * PASS_OUTPUTS  # what kind of sums, biases
 WEIGHT_OFFSET, BIAS_OFFSET = 128, 32768
 ACTIVATION_MAX = 127
 ROUNDING = 32  # what a hidden layer's sum starts with besides its bias
@@ -61,15 +61,19 @@ def passes(model: Model, layer: int) -> list[Pass]:
         here = slice(outputs.start, outputs.stop)
         low, high = int(least[here].min()), int(most[here].max())
         narrow = low >= NARROW_MIN and high <= NARROW_MAX
-        found.append(Pass(outputs, _stream(narrow, weights[here], biases[here]), low, high, narrow))
+        stream = _stream(narrow, weights[here], (start if narrow else biases)[here])
+        found.append(Pass(outputs, stream, low, high, narrow))
     return found
 
 
 def _stream(narrow: bool, weights: NDArray[np.int64], biases: NDArray[np.int64]) -> NDArray[np.uint8]:
-    absent = PASS_OUTPUTS - len(weights)
-    bias = (np.pad(biases, (0, absent)) + BIAS_OFFSET).astype("<u2").view(np.uint8)
-    rows = np.pad(weights, ((0, absent), (0, 0))).T + WEIGHT_OFFSET
-    return np.concatenate([[np.uint8(narrow)], bias, rows.astype(np.uint8).ravel()])
+    """The bytes of a pass. Sums of 24 bits are of unsigned weights, those of 16 bits start rounded."""
+    outputs, inputs = weights.shape
+    absent = PASS_OUTPUTS - outputs
+    weight_offset, bias_offset = (0, 0) if narrow else (WEIGHT_OFFSET, BIAS_OFFSET)
+    bias = (np.pad(biases, (0, absent)) + bias_offset).astype("<u2").view(np.uint8)
+    rows = np.pad(weights, ((0, absent), (0, 0))).T + weight_offset
+    return np.concatenate([[np.uint8(inputs if narrow else 0)], bias, rows.astype(np.uint8).ravel()])
 
 
 def narrow_outputs(layer: list[Pass]) -> int:

@@ -13,7 +13,8 @@
 using namespace tilenca;
 
 // What the test looks at.
-volatile uint16_t vectors, calls, differences, interrupts, done;
+volatile uint16_t vectors, calls, differences, done;
+volatile uint32_t interrupts;
 volatile uint16_t wide_passes, zero_outputs, full_outputs, full_states;
 int8_t inputs[kMaxInputs + 1];
 int16_t states[kMaxChannels + kPassOutputs], start_states[kMaxChannels + kPassOutputs];
@@ -73,8 +74,8 @@ int16_t sum_of(const int8_t* values, uint8_t count) {
     return sum;
 }
 
-void differs_if(bool so) {
-    differences += so;
+void differs_if(bool so, const Layer& layer) {
+    differences += so || inputs[layer.inputs] != kEnd;
     ++calls;
 }
 
@@ -96,7 +97,8 @@ void compare_hidden(const Layer& layer, int8_t least) {
         const uint8_t whole = (count + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
         const int16_t sum = hidden_outputs(layer, given, from, from + count, outputs + 4 - from);
         hidden_outputs<OneCell>(layer, inputs, from, from + whole, expected + 4 - from);
-        differs_if(memcmp(outputs, expected, sizeof outputs) != 0 || sum != sum_of(expected + 4, whole));
+        differs_if(memcmp(outputs, expected, sizeof outputs) != 0 || sum != sum_of(expected + 4, whole),
+                   layer);
         for (uint8_t i = 0; i < count; ++i) {
             zero_outputs += expected[4 + i] == 0;
             full_outputs += expected[4 + i] == 127;
@@ -123,7 +125,7 @@ void compare_output(const Layer& layer) {
         count = some_outputs(layer.outputs - from);
         add_outputs(layer, given, from, from + count, states);
         add_outputs<OneCell>(layer, inputs, from, from + count, expected);
-        differs_if(memcmp(states, expected, sizeof states) != 0);
+        differs_if(memcmp(states, expected, sizeof states) != 0, layer);
         wide_passes += !layer.narrow(from);
     }
     for (uint8_t c = 0; c < layer.outputs; ++c) {

@@ -34,7 +34,7 @@ class LayerStream {
     }
 
     // A view of this: it must not outlive it.
-    Layer layer() const { return {inputs_, outputs_, FlashView<uint8_t>(bytes_.data())}; }
+    Layer layer() const { return {inputs_, outputs_, FlashView<uint8_t>(bytes_.data()), false, 0}; }
 
   private:
     uint8_t inputs_;

@@ -55,8 +55,7 @@ template <class Lanes, class Layer, class Inputs>
 void hidden_outputs(const Layer& layer, const Inputs* inputs, uint8_t from, uint8_t to,
                     typename Lanes::Outputs* outputs) {
     for (uint8_t j = from; j < to; ++j) {
-        const auto rounded =
-            (accumulate<Lanes>(layer, j, inputs) + (1 << (kHiddenShift - 1))) >> kHiddenShift;
+        const auto rounded = (accumulate<Lanes>(layer, j, inputs) + kHiddenRounding) >> kHiddenShift;
         outputs[j] = Lanes::outputs(Lanes::clamp(rounded, 0, kHiddenMax));
     }
 }

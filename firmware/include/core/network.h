@@ -21,6 +21,7 @@ constexpr int16_t kStateMax = kMessageMax << kMessageShift;
 constexpr int16_t kSeedState = 1 << 13; // 1.0, in channel 0 of a cell that was just switched on
 constexpr uint8_t kHiddenShift = 6;     // accumulator 2^-12, activation 2^-6
 constexpr int8_t kHiddenMax = 127;
+constexpr uint8_t kHiddenRounding = 1 << (kHiddenShift - 1);
 
 // 5 C -> H1 -> H2 -> C. A view: the weights belong to the exported model (or, on the host, to the caller).
 struct Network {

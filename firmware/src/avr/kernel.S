@@ -5,17 +5,17 @@
 ;                          uint8_t count)
 ;                          r16
 ;
-; `passes` in flash: for each pass 1 if 16 bits hold all its sums, else 0; eight biases + 32768 as uint16; then
-; for each input eight weights + 128. `inputs` end with -128, and `sum` is theirs. Bits 6..0 of `count` say how
-; many outputs: rounded up to whole passes, they go to the int8 at `results` as activations, and their sum is
-; returned; or, with bit 7, they are added to the int16 at `results`.
+; `passes` in flash: those of core/layer.h. `inputs` end with -128, and `sum` is theirs; if all passes are
+; narrow, it may be anything. Bits 6..0 of `count` say how many outputs: rounded up to whole passes, they go to
+; the int8 at `results` as activations, and their sum is returned; or, with bit 7, they are added to the int16
+; at `results`. Five outputs that are left, or fewer, have rows of their own.
 ;
-; Offsets make every product unsigned, so that its carry is all a third byte needs: 8 cycles per weight. What
-; is too much, 128 times the sum of the inputs and 32768, is taken off where the sums start. An input of zero
-; skips its row, that of a negative one is subtracted. Interrupts may come at any time. Stack: 33 bytes with
-; the return address.
+; This file is about sums of 24 bits, narrow.inc about those of 16. Offsets make every product unsigned, so that
+; its carry is all a third byte needs: 8 cycles per weight. What is too much, 128 times the sum of the inputs
+; and 32768, is taken off where the sums start. An input of zero skips its row, that of a negative one is
+; subtracted. Interrupts may come at any time. Stack: 33 bytes with the return address.
 
-#include "rows.inc"
+#include "wide.inc"
 
 #define SPL 0x3d
 #define SPH 0x3e
@@ -24,7 +24,7 @@
 #define SUM 1
 #define INPUTS 3
 #define START 5
-#define COUNT 8
+#define COUNT_AT 8
 #define RESULTS 9
 
     .section .text.tilenca_passes, "ax", @progbits
@@ -55,46 +55,48 @@ tilenca_passes:
 .Lpass:
     in r28, SPL
     in r29, SPH
+    clr r1
+    lpm r0, Z+
+    cpse r0, r1
+    rjmp .Lnarrow
+.Lwide:
+    ; T: no more than five, of the last layer; in others the rest of a pass must become zeros.
+    ldd r16, Y + COUNT_AT
+    subi r16, 0x80
+    subi r16, 6
+    sbc r16, r16
+    bst r16, 0
     ldd r26, Y + START
     ldd r27, Y + START + 1
-    lpm r0, Z+
-    bst r0, 0
     ldd r0, Y + START + 2
-    clr r1
     each start_sum 0
     ldd r26, Y + INPUTS
     ldd r27, Y + INPUTS + 1
     clr ZERO
     brtc 9f
-    rjmp .Lnarrow
-9:  rows multiply24
+    rjmp .Lfew_rows
+9:  rows each
     rjmp .Lend_of_rows
-.Lnarrow:
-    rows multiply16
-    each extend_sign 0
-
+.Lfew_rows:
+    rows five, 3
 .Lend_of_rows:
     in r28, SPL
     in r29, SPH
     ldd r26, Y + RESULTS
     ldd r27, Y + RESULTS + 1
-    ldd r0, Y + COUNT
+    ldd r0, Y + COUNT_AT
     sbrc r0, 7
     rjmp .Lto_state
     ldi r28, 127
     mov r1, r28
     ldi r28, 32
     mov r0, r28
-    activate r2, r3, r4
+    activate_two r2, r3, r4, r5, r6, r7
     clr r2
     clr r4
-    activate_next r5, r6, r7
-    activate_next r8, r9, r10
-    activate_next r11, r12, r13
-    activate_next r14, r15, r16
-    activate_next r17, r18, r19
-    activate_next r20, r21, r22
-    activate_next r23, r24, r25
+    activate_next_two r8, r9, r10, r11, r12, r13
+    activate_next_two r14, r15, r16, r17, r18, r19
+    activate_next_two r20, r21, r22, r23, r24, r25
     in r28, SPL
     ldd r16, Y + SUM
     ldd r17, Y + SUM + 1
@@ -104,9 +106,9 @@ tilenca_passes:
     std Y + SUM + 1, r17
     std Y + RESULTS, r26
     std Y + RESULTS + 1, r27
-    ldd r16, Y + COUNT
+    ldd r16, Y + COUNT_AT
     subi r16, 8
-    std Y + COUNT, r16
+    std Y + COUNT_AT, r16
     breq .Ldone
     brcs .Ldone
     rjmp .Lpass
@@ -114,6 +116,7 @@ tilenca_passes:
 .Ldone:
     pop r24
     pop r25
+.Ldone_but_sum:
     .irp ignored, 3, 4, 5, 6, 7, 8, 9, 10
     pop r0
     .endr
@@ -126,7 +129,7 @@ tilenca_passes:
 ; Z walks through the sums where the chip maps its registers: r2 is at address 2. r4 is read before it is
 ; written.
 .Lto_state:
-    ldd r28, Y + COUNT
+    ldd r28, Y + COUNT_AT
     andi r28, 0x7F
     cpi r28, 8
     brlo 9f
@@ -181,11 +184,13 @@ tilenca_passes:
     in r29, SPH
     std Y + RESULTS, r26
     std Y + RESULTS + 1, r27
-    ldd r16, Y + COUNT
+    ldd r16, Y + COUNT_AT
     subi r16, 8
-    std Y + COUNT, r16
+    std Y + COUNT_AT, r16
     cpi r16, 0x81
     brsh 9f
     rjmp .Ldone
 9:  rjmp .Lpass
+
+#include "narrow.inc"
     .size tilenca_passes, . - tilenca_passes

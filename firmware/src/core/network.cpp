@@ -77,7 +77,9 @@ void Forward::begin(int8_t* inputs, int16_t* state) {
     const uint8_t count = network_.hidden1.inputs;
     inputs[count] = kEnd;
     state_ = state;
-    begin_layer(network_.hidden1, {inputs, sum_of_messages(inputs, network_.channels())}, Stage::Hidden1);
+    const Layer& layer = network_.hidden1;
+    const int16_t sum = layer.narrow_only ? 0 : sum_of_messages(inputs, network_.channels());
+    begin_layer(layer, {inputs, sum}, Stage::Hidden1);
 }
 
 void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage) {
@@ -93,7 +95,8 @@ void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage)
     stage_ = stage;
 }
 
-void Forward::step() {
+// Calls cost more than they are worth here.
+__attribute__((flatten)) void Forward::step() {
     if (done()) {
         return;
     }

@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model 385C; do not edit. Body 66a744e96a1d0020
+// Rendered by `tilenca export` from model 385C; do not edit. Body 0f6ab8e8bec71c5c
 #include "model/model.h"
 
 namespace tilenca {
@@ -776,9 +776,9 @@ const Model kModel = {
     kModelId,
     kClasses,
     {
-        {kTaps * kChannels, kHidden1, FlashView<uint8_t>(kLayer1)},
-        {kHidden1, kHidden2, FlashView<uint8_t>(kLayer2)},
-        {kHidden2, kChannels, FlashView<uint8_t>(kLayer3)},
+        {kTaps * kChannels, kHidden1, FlashView<uint8_t>(kLayer1), false, kHiddenRounding},
+        {kHidden1, kHidden2, FlashView<uint8_t>(kLayer2), false, kHiddenRounding},
+        {kHidden2, kChannels, FlashView<uint8_t>(kLayer3), false, 0},
     },
     FlashView<Look>(kLooks),
 };
