@@ -3,19 +3,20 @@
 A batch sees some ten updates of a tissue, and between two batches the weights change: what drifts slowly
 under one set of weights hardly shows. The fast simulator lets the quiet tissues live for thousands of updates
 by the integers that tiles would run, and training goes on from where that led. It also lets many drawings
-begin, be rebuilt, or lose a tile for a while, until they should agree: the few that do not are what training
-has to see.
+begin, be rebuilt, lose a tile for a while, or begin in states of others, until they should agree: the few
+that do not are what training has to see.
 """
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tilenca.drawings import Drawings
 from tilenca.engines import SEED_STATE
 from tilenca.modelfile import Model
-from tilenca.pool import Pool, Pools
+from tilenca.pool import Pool, Pools, States
 from tilenca.protocol import STATE_MAX
 from tilenca.rebuild import moved
 from tilenca.simulate import Conditions, FastEngine, Fault, Simulator
@@ -23,8 +24,13 @@ from tilenca.simulate import Conditions, FastEngine, Fault, Simulator
 ROUNDS_PER_STEP = 3  # of training, about as many as a period of a tile takes there
 CLOCKS = Conditions("clock", boot=0.0)
 BEGINNINGS = (Conditions("random"), Conditions("clock"), Conditions("clock", loss=0.5))
-BEFORE, AGREED_BY = 40, 60  # steps that a drawing lives before something happens, and that it has to agree
+BEFORE, AGREED_BY = 50, 60  # steps that a drawing lives before something happens, and that it has to agree
 MOST_STUCK = 1 / 8  # of the busy pool
+
+
+def as_integers(states: States) -> NDArray[np.int16]:
+    """The same states as tiles store them."""
+    return np.rint(states * SEED_STATE).clip(-STATE_MAX, STATE_MAX).astype(np.int16)
 
 
 def live_ahead(
@@ -42,8 +48,8 @@ def live_ahead(
     least, most = map(math.log, steps)
     count = round(math.exp(random.uniform(least, most)))
     batch = drawings.batch(pool.drawing)
-    states = np.rint(pool.states[batch.sample, batch.place] * SEED_STATE).clip(-STATE_MAX, STATE_MAX)
-    simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states.astype(np.int16))
+    states = as_integers(pool.states[batch.sample, batch.place])
+    simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states)
     simulator.run(count)
     pool.states[batch.sample, batch.place] = simulator.states / np.float32(SEED_STATE)
     pool.age += count * ROUNDS_PER_STEP
@@ -55,7 +61,7 @@ def put_what_is_stuck(model: Model, pools: Pools, runs: int, random: np.random.G
     Args:
         model: by which they live.
         pools: where they go.
-        runs: tissues to try in each way.
+        runs: drawings of the files to try in each way, beside some of other sizes.
         random: the only source of chance.
 
     Returns:
@@ -74,20 +80,28 @@ def put_what_is_stuck(model: Model, pools: Pools, runs: int, random: np.random.G
 
 
 def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Generator) -> Iterator[Simulator]:
-    """Whole drawings that begin, have just been rebuilt, and have just got a tile back."""
+    """Whole drawings that begin, are rebuilt, get a tile back, or are put together from tiles of others."""
     drawings = pools.drawings
-    for conditions in BEGINNINGS:
-        yield Simulator(engine, drawings, pools.pick_some(runs), conditions, random)
 
-    old = pools.pick_some(runs, whole=False)
-    new = np.array([pools.pick_other(drawing, whole=True) for drawing in old])
+    def some() -> NDArray[np.int64]:
+        return np.concatenate((pools.pick_whole(runs, drawn=True), pools.pick_whole(runs // 3)))
+
+    for conditions in BEGINNINGS:
+        yield Simulator(engine, drawings, some(), conditions, random)
+
+    new = some()
+    old = np.array([pools.pick_other(drawing) for drawing in new])
     built = Simulator(engine, drawings, old, Conditions("clock"), random)
     built.run(BEFORE)
     stays = [drawings.overlap(int(a), int(b), random) for a, b in zip(old, new, strict=True)]
     yield Simulator(engine, drawings, new, CLOCKS, random, moved(engine, built, stays))
 
-    chosen = pools.pick_some(runs)
+    chosen = pools.pick_whole(runs, drawn=True)
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
     back = Simulator(engine, drawings, chosen, Conditions("clock"), random, fault=away)
     back.run(BEFORE)
     yield back
+
+    chosen = some()
+    states = as_integers(pools.any_states(int(drawings.sizes[chosen].sum())))
+    yield Simulator(engine, drawings, chosen, CLOCKS, random, states)

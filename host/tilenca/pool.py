@@ -79,7 +79,6 @@ class Pools:
         groups = np.array(drawings.groups)
         self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
         self._everything = np.arange(len(drawings))
-        self._is_whole = curriculum.whole
         self._whole = np.flatnonzero(curriculum.whole)
         self._drawn = np.flatnonzero(curriculum.whole & (groups < len(drawings.sources)))
         self._weigh(0.0)
@@ -97,7 +96,7 @@ class Pools:
         recipe, random = self.recipe, self.random
         self._weigh(progress)
         busy_count = recipe.batch - recipe.quiet_batch
-        resets = switches = 0
+        resets = switches = disturbed = 0
         if recipe.pool == 0:
             self.busy = self._empty(busy_count)
             self._refill(self.busy)
@@ -106,10 +105,13 @@ class Pools:
             self._busy_taken = random.choice(recipe.pool, busy_count, replace=False)
             resets = round(recipe.reset * busy_count)
             switches = round(recipe.switch * busy_count)
+            disturbed = resets + switches + round(recipe.scramble * busy_count)
             for number in self._busy_taken[:resets]:
                 self.reset(self.busy, int(number))
             for number in self._busy_taken[resets : resets + switches]:
                 self.switch(self.busy, int(number))
+            for number in self._busy_taken[resets + switches : disturbed]:
+                self.scramble(self.busy, int(number))
         self._quiet_taken = random.choice(max(recipe.quiet_pool, 1), recipe.quiet_batch, replace=False)
         for number in self._quiet_taken:
             if self.quiet.age[number] >= self.quiet.life[number]:
@@ -122,8 +124,7 @@ class Pools:
         late = np.zeros(recipe.batch, np.bool_)
         late[:resets] = random.random(resets) < recipe.late
         away = np.zeros(len(batch.sample), np.bool_)
-        first = resets + switches
-        for number in range(first, first + round(recipe.away * busy_count)):
+        for number in range(disturbed, disturbed + round(recipe.away * busy_count)):
             size = self.drawings.sizes[chosen[number]]
             away[batch.starts[number] + random.integers(size, size=random.integers(1, 3))] = True
         calm = np.arange(recipe.batch) >= busy_count
@@ -193,16 +194,29 @@ class Pools:
         upto = np.cumsum(self._chances[among])
         return int(among[min(np.searchsorted(upto, self.random.random() * upto[-1]), len(among) - 1)])
 
-    def pick_some(self, count: int, whole: bool = True) -> NDArray[np.int64]:
-        """(count,) drawings, whole ones or any."""
-        among = self._whole if whole else self._everything
+    def pick_whole(self, count: int, drawn: bool = False) -> NDArray[np.int64]:
+        """(count,) drawings of a class without damage, at any size or those of the files only."""
+        among = self._drawn if drawn else self._whole
         return np.array([self._pick(among) for _ in range(count)])
 
-    def pick_other(self, drawing: int, whole: bool = False) -> int:
-        """Another drawing of its scale, a whole one or any; the same where there is none."""
+    def pick_other(self, drawing: int) -> int:
+        """Another drawing of its scale; the same where there is none."""
         others = self._same_scale[self.drawings.groups[drawing]]
-        others = others[(others != drawing) & (self._is_whole[others] | (not whole))]
+        others = others[others != drawing]
         return self._pick(others) if len(others) else drawing
+
+    def any_states(self, count: int) -> States:
+        """(count, C) states of any tiles of the busy pool, which know nothing of each other."""
+        tissues = self.random.integers(len(self.busy.drawing), size=count)
+        return self.busy.states[
+            tissues, self.random.integers(self.drawings.sizes[self.busy.drawing[tissues]])
+        ]
+
+    def scramble(self, pool: Pool, number: int) -> None:
+        """Gives every tile of a tissue the state of any other."""
+        size = self.drawings.sizes[pool.drawing[number]]
+        pool.states[number, :size] = self.any_states(size)
+        pool.age[number] = 0
 
     def put(self, drawing: int, states: States) -> None:
         """Into any place of the busy pool, as one that had time.

@@ -27,6 +27,7 @@ class Recipe:
         late: share of the samples taken back to the seed in which tiles are switched on one after the other;
             what the first ones make of it is not held against them, but they must get over it later.
         switch: share of a batch rebuilt into another drawing while running.
+        scramble: share of a batch whose tiles get states of any others: from anywhere they must find back.
         away: share of a batch in which a tile or two are off for once; what the others make of it is not held
             against them.
         quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift.
@@ -72,13 +73,14 @@ class Recipe:
     reset: float = 0.0
     late: float = 0.0
     switch: float = 0.0
+    scramble: float = 0.0
     away: float = 0.0
     quiet_pool: int = 0
     quiet_batch: int = 0
     quiet_rounds: tuple[int, int] = (200, 4000)
     ahead_every: int = 0
     ahead: tuple[int, int] = (50, 3000)
-    trials: int = 200
+    trials: int = 300
     quiet_penalty: float = 0.0
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
@@ -116,6 +118,7 @@ FULL = Recipe(
     reset=0.15,
     late=0.5,
     switch=0.3,
+    scramble=0.05,
     away=0.1,
     quiet_pool=128,
     quiet_batch=12,
