@@ -1,12 +1,14 @@
 """Writes the tables of docs/TRAINING.md and the shipped models' cards: tools/training_tables.py [--check].
 
 Both follow from the models' metrics, and from what an update costs a tile, which changes with the firmware.
+With --measure models are asked again, by their cards' seeds, as after a change of how tiles behave.
 Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
 """
 
 import argparse
 import json
 import re
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -122,6 +124,26 @@ def rendered(text: str) -> str:
     return text
 
 
+def measure(name: str) -> None:
+    """Asks a shipped model again all that its card shows, and keeps the answers in its metrics."""
+    metrics, model = metrics_of(name), load_model(MODELS / name)
+    words = [
+        sys.executable,
+        "-m",
+        "tilenca.cli",
+        "evaluate",
+        "--exam",
+        "--json",
+        "--model",
+        str(MODELS / name),
+    ]
+    words += ["--shapes", *(str(paths.ROOT / place) for place in model.made["shapes"])]
+    words += ["--runs", str(metrics["runs_per_drawing"]), "--seed", str(metrics["seed"])]
+    answer = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    new = metrics | json.loads(answer)["metrics"]
+    (MODELS / name / "metrics.json").write_text(json.dumps(new, indent=2) + "\n", encoding="utf-8")
+
+
 def documents() -> dict[Path, str]:
     """What every document should say.
 
@@ -139,7 +161,12 @@ def main() -> int:
     """Writes the documents; with --check exits 1 where one differs."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where one differs")
+    parser.add_argument(
+        "--measure", nargs="+", default=[], metavar="MODEL", help="ask these models again before"
+    )
     args = parser.parse_args()
+    for name in args.measure:
+        measure(name)
     differ = {path: text for path, text in documents().items() if path.read_text(encoding="utf-8") != text}
     for path, text in differ.items():
         if args.check:
