@@ -12,7 +12,7 @@ from tilenca.errors import NoDeviceError, UsageError
 from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
 from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
-from tilenca.tilesfile import DEFAULT, Place, read_tiles
+from tilenca.tilesfile import DEFAULT, Place, read_tiles, tile_count
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def board_name(port: Port, shared: Iterable[str]) -> str:
         return f"serial:{port.serial_number}"
     if port.location:
         return f"location:{port.location}"
-    return f"port:{Path(port.name).absolute()}"
+    return f"port:{Path(port.name).parent.resolve() / Path(port.name).name}"
 
 
 def shared_serials(ports: Iterable[Port]) -> set[str]:
@@ -104,10 +104,18 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_places(path: Path | None) -> list[Place]:
-    """The tiles of the file that `--tiles` names, else of the one in this folder, else none."""
+    """The tiles of the file that `--tiles` names, else of the one in this folder, else none.
+
+    Raises:
+        UsageError: the file is wrong, or lists nothing.
+    """
     if path is None and not DEFAULT.exists():
         return []
-    return read_tiles(path or DEFAULT)
+    if places := read_tiles(path or DEFAULT):
+        return places
+    raise UsageError(
+        f"{path or DEFAULT}: lists no tile; write it with `tilenca devices --learn`, or remove it"
+    )
 
 
 def match_ports(patterns: Sequence[str]) -> list[Board]:
@@ -123,7 +131,7 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
         path: of `--tiles`.
 
     Raises:
-        NoDeviceError: nothing of it is there.
+        NoDeviceError: no port that is meant is there, and no file lists a tile.
         UsageError: the file is wrong.
     """
     places = load_places(path)
@@ -135,8 +143,7 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     # What the file lists by its USB socket may be a board whose ids are not known here.
     listed = [p for p in on_usb if is_mega(p) or any(is_board(p, place.board) for place in places)]
     devices |= {os.path.realpath(port.name): port for port in listed}
-    listed = list(devices.values()) or find_ports()
-    boards = match(sorted(listed, key=lambda port: natural_key(port.name)), places, on_usb)
+    boards = match(sorted(devices.values(), key=lambda port: natural_key(port.name)), places, on_usb)
     known_places = {board.place for board in boards}
     missing = [place for place in places if place not in known_places]
     others = [board for board in boards if board.place is None]
@@ -152,11 +159,16 @@ def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
     """
     found = find_boards(patterns, path)
     if not found.boards:
-        raise NoDeviceError(
-            f"none of the {len(found.missing)} tiles that {path or DEFAULT} lists is connected; "
-            "`tilenca devices` lists what is on USB"
-        )
+        raise none_connected(found, path)
     return found
+
+
+def none_connected(found: Found, path: Path | None) -> NoDeviceError:
+    """The complaint that of the fleet nothing is there."""
+    listed = tile_count(len(found.missing))
+    return NoDeviceError(
+        f"of the {listed} that {path or DEFAULT} lists, none is connected; connect it, or give --port"
+    )
 
 
 def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | None) -> None:

@@ -162,9 +162,16 @@ def test_a_person_says_where_blinking_tiles_lie(lab: Lab, tmp_path: Path) -> Non
     ports = ["--port", lab.port(1), "--port", lab.port(2)]
     file = tmp_path / "two.toml"
     arguments = ["devices", "--learn", "--blink", "--tiles", str(file), *ports]
-    done = tilenca(lab, *arguments, typed="0 0\n0 0\nx\n4 -1\n")
-    assert done.stderr.count("blinks") == 4
+    done = tilenca(lab, *arguments, typed="0 0\n0 0\nx\n4 99999\n4 -1\n")
+    assert done.stderr.count("blinks") == 5
     assert [(place.tile, place.row, place.col) for place in read_tiles(file)] == [(1, 0, 0), (2, 4, -1)]
+    before = file.read_bytes()
+    nothing = tilenca(lab, *arguments, status=1)
+    assert f"no tile was given a place: {file} is left as it was" in nothing.stderr
+    assert file.read_bytes() == before
+    one = tilenca(lab, "devices", "--learn", "--tiles", str(file), *ports[:2])
+    assert "kept as they were, since they were not heard now: tile 2" in one.stderr
+    assert file.read_bytes() == before
 
 
 def test_tiles_without_an_id_of_their_own_get_one_if_asked(lab: Lab, tmp_path: Path) -> None:
@@ -173,7 +180,7 @@ def test_tiles_without_an_id_of_their_own_get_one_if_asked(lab: Lab, tmp_path: P
     file = tmp_path / "two.toml"
     arguments = ["devices", "--learn", "--tiles", str(file), *ports]
     done = tilenca(lab, *arguments, status=1)
-    assert f"no id of their own have the tiles behind {lab.port(2)}; add --assign" in done.stderr
+    assert f"without an id of their own: {lab.port(2)} (1, as another); add --assign" in done.stderr
     assert not file.exists()
     tilenca(lab, *arguments, "--assign")
     assert [place.tile for place in read_tiles(file)] == [1, 2]
