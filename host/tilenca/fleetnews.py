@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tilenca.boardtest import BOARD_TEST
-from tilenca.fleetview import port_words
+from tilenca.fleetview import clock_text, port_words
 from tilenca.linkhealth import FAILING, WELL
 from tilenca.protocol import (
     AckSentence,
@@ -27,6 +27,12 @@ class News:
     tile: int | None
     text: str
     bad: bool = False
+
+
+def news_line(news: News, port: str | None = None) -> str:
+    """News as one line, the port by another name if one is given."""
+    tile = "-" if news.tile is None else str(news.tile)
+    return f"{clock_text(news.time_s)} tile {tile:>3} {port or news.port} {news.text}"
 
 
 class Reporter:
