@@ -3,7 +3,7 @@
 import argparse
 import os
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -178,6 +178,18 @@ def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | Non
             f"{port}: tile {listed} by the file of tiles, but it calls itself {hello.tile}; "
             "`tilenca devices --learn` writes the file anew, `tilenca set id` renames the tile"
         )
+
+
+def tell_models(hellos: Mapping[str, HelloSentence]) -> None:
+    """Says which tiles, by their ports, run another model than most: they are as good as not there."""
+    counted = Counter(hello.model_id for hello in hellos.values())
+    most = max(counted, key=lambda model: counted[model], default=0)
+    for port, hello in hellos.items():
+        if hello.model_id != most:
+            warn(
+                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; they do "
+                f"not hear each other; flash it: tilenca flash --port {port}"
+            )
 
 
 def tile_numbers(text: str) -> set[int]:

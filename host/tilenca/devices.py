@@ -19,6 +19,7 @@ from tilenca.boards import (
     match_ports,
     none_connected,
     tell_contradiction,
+    tell_models,
 )
 from tilenca.errors import TilencaError, UsageError
 from tilenca.learning import Learnt, learn
@@ -72,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
         answers = ask_all([board.port.name for board in present], "tilenca devices")
         for board in present:
             tell_contradiction(board.port.name, board.tile, answers[board.port.name].hello)
+        tell_models({name: answer.hello for name, answer in answers.items() if answer.hello})
         left_out = sum(answer.hello is None for answer in answers.values())
     if args.json:
         print(json.dumps(document(present, found, answers), indent=2))

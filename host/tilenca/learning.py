@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from tilenca.asking import Answer, ask
-from tilenca.boards import Board
+from tilenca.boards import Board, tell_models
 from tilenca.commanding import command_all
 from tilenca.errors import TilencaError
 from tilenca.fleetgrid import neighbours
@@ -55,6 +55,7 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
             if answer.hello is None:
                 warn(f"{name}: {answer.problem}; left out")
         said = {name: answer.hello for name, answer in answers.items() if answer.hello}
+        tell_models(said)
         tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
             raise TilencaError("no tile answers; flash them first: tilenca flash")

@@ -9,7 +9,7 @@ import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
 from tilenca import ports
-from tilenca.boards import board_name, find_boards, find_fleet, tell_contradiction, tile_numbers
+from tilenca.boards import board_name, find_boards, find_fleet, tell_contradiction, tell_models, tile_numbers
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
 from tilenca.ports import Port
@@ -166,6 +166,15 @@ def test_a_tile_that_calls_itself_otherwise_is_told(capsys: pytest.CaptureFixtur
     assert capsys.readouterr().err == ""
     tell_contradiction("p", 7, hello)
     assert "tile 7 by the file of tiles, but it calls itself 9" in capsys.readouterr().err
+
+
+def test_tiles_that_run_another_model_than_most_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    ours, other = (HelloSentence(2, 3, model, 21, 10, 100, 0, 0, 0, 255) for model in (0xABCD, 0x1234))
+    tell_models({})
+    tell_models({"a": ours, "b": ours})
+    assert capsys.readouterr().err == ""
+    tell_models({"a": other, "b": ours, "c": ours})
+    assert capsys.readouterr().err.startswith("a: tile 3 runs model 1234, most run ABCD; ")
 
 
 def test_lists_of_tiles() -> None:
