@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +13,9 @@ from tilenca.errors import NoDeviceError, UsageError
 from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
 from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
-from tilenca.tilesfile import DEFAULT, Place, read_tiles, tile_count
+from tilenca.tilesfile import DEFAULT, MAX_TILE_ID, Place, read_tiles, tile_count
+
+_SPAN = re.compile(r"([0-9]{1,3})(?:-([0-9]{1,3}))?")
 
 
 @dataclass(frozen=True)
@@ -200,8 +203,9 @@ def tile_numbers(text: str) -> set[int]:
     """
     numbers: set[int] = set()
     for part in text.split(","):
-        first, _, last = part.strip().partition("-")
-        if not (first.isdecimal() and (last.isdecimal() or "-" not in part)) or int(last or first) > 255:
-            raise UsageError(f"'{text}' is not a list of tiles such as 3,7,9-12")
-        numbers.update(range(int(first), int(last or first) + 1))
+        match = _SPAN.fullmatch(part.strip())
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+        if not first <= last <= MAX_TILE_ID:
+            raise UsageError(f"'{text}' is not a list of tiles such as 3,7,9-12, from 0 to {MAX_TILE_ID}")
+        numbers.update(range(first, last + 1))
     return numbers

@@ -18,7 +18,7 @@ from tilenca.telemetry import Event, Heard, LineReader, PortNews
 
 RETRY_S = 0.5
 WRITE_S = 1.0
-WAS_RESET = "opening it has reset the tile, which Linux cannot avoid the first time after it was plugged in"
+WAS_RESET = "opening it has reset the tile"
 
 
 class _OpenPort:

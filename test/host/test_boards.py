@@ -179,6 +179,6 @@ def test_tiles_that_run_another_model_than_most_are_told(capsys: pytest.CaptureF
 
 def test_lists_of_tiles() -> None:
     assert tile_numbers("3,7, 9-11") == {3, 7, 9, 10, 11}
-    for wrong in ("", "x", "3-", "-3", "1,,2", "1-999"):
+    for wrong in ("", "x", "3-", "-3", "1,,2", "1-999", "9-3", "256", "\N{ARABIC-INDIC DIGIT THREE}"):
         with pytest.raises(UsageError, match="not a list of tiles"):
             tile_numbers(wrong)

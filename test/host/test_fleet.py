@@ -127,7 +127,10 @@ def test_a_setting_reaches_the_tiles_that_are_meant_and_is_read_back(lab: Lab) -
     everybody = json.loads(tilenca(lab, "set", "period", "120", "--json").stdout)["tiles"]
     assert {tile["settings"]["period"] for tile in everybody} == {120}
     assert [t["tile"] for t in everybody if t["settings"]["brightness"] == 77] == [3, 5, 6]
-    tilenca(lab, "set", "preset", "default")
+    assert "different periods" not in tilenca(lab, "set", "preset", "default").stderr
+    some = tilenca(lab, "set", "period", "40", "--tile", "3")
+    assert "tiles may have different periods now (40 ms, others not known)" in some.stderr
+    tilenca(lab, "set", "preset", "default", "--tile", "3")
 
 
 @pytest.mark.parametrize(
@@ -137,8 +140,10 @@ def test_a_setting_reaches_the_tiles_that_are_meant_and_is_read_back(lab: Lab) -
         ["period", "x"],
         ["colour", "3"],
         ["preset", "fast"],
+        ["brightness", "\N{ARABIC-INDIC DIGIT THREE}"],
         ["id", "3"],
         ["id", "3", "--tile", "x"],
+        ["id", "3", "--tile", "1"],
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_before_any_tile_has_it(lab: Lab, arguments: list[str]) -> None:
