@@ -5,7 +5,7 @@ import time
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from tilenca.asking import Answer, ask
+from tilenca.asking import SILENT, Answer, ask
 from tilenca.boards import Board, tell_models
 from tilenca.commanding import command_all
 from tilenca.errors import TilencaError
@@ -58,7 +58,8 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
         tell_models(said)
         tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
-            raise TilencaError("no tile answers; flash them first: tilenca flash")
+            mute = any(answer.problem == SILENT for answer in answers.values())
+            raise TilencaError(f"no tile answers{'; flash them first: tilenca flash' if mute else ''}")
         renamed = any(tile != said[name].tile for name, tile in tiles.items())
         slowest_s = max(said[name].period_ms for name in tiles) / 1000
         _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)

@@ -112,6 +112,12 @@ def test_a_plain_file_is_no_port(tmp_path: Path) -> None:
         find_ports([str(tmp_path / "file")])
 
 
+@pytest.mark.parametrize("name", ["/dev/null", "/dev/zero"])
+def test_a_device_with_nothing_behind_it_is_no_port(name: str) -> None:
+    with pytest.raises(NoDeviceError):
+        find_ports([name])
+
+
 def test_a_lock_names_its_holder_and_ends_with_its_block(pty: str) -> None:
     holder = rf"^tilenca flash \(pid {os.getpid()}\)$"
     with port_lock(pty, "tilenca flash"), pytest.raises(PortBusyError, match=holder), port_lock(pty, "other"):
