@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tilenca.arguments import add_port_argument
 from tilenca.errors import NoDeviceError, UsageError
-from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
+from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, nature, serial_ports
 from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
 from tilenca.tilesfile import DEFAULT, MAX_TILE_ID, Place, read_tiles, tile_count
@@ -141,8 +141,9 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     on_usb = [describe(info) for info in serial_ports()]
     if patterns or not places:
         return Found(match(find_ports(patterns), places, on_usb))
-    names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]
-    devices = {os.path.realpath(name): Port(name) for name in names if is_device(name)}
+    names = [_short(place.board.partition(":")[2]) for place in places if place.board.startswith("port:")]
+    paths = {os.path.realpath(name): name for name in names if is_device(name)}
+    devices = {device: Port(name, about=nature(device)) for device, name in paths.items()}
     # What the file lists by its USB socket may be a board whose ids are not known here.
     listed = [p for p in on_usb if is_mega(p) or any(is_board(p, place.board) for place in places)]
     devices |= {os.path.realpath(port.name): port for port in listed}
@@ -151,6 +152,12 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     missing = [place for place in places if place not in known_places]
     others = [board for board in boards if board.place is None]
     return Found([board for board in boards if board.place is not None], missing, others)
+
+
+def _short(name: str) -> str:
+    """A path as it would be named here: from this folder on, if it is in it."""
+    path = Path(name)
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else name
 
 
 def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:

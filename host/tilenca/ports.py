@@ -157,12 +157,16 @@ def _named(patterns: Sequence[str], by_device: dict[str, Port]) -> list[Port]:
             device = os.path.realpath(name)
             known = by_device.get(device, Port(name))
             if is_device(name):
-                about = known.about or ("pseudo-terminal" if is_pty(device) else "")
-                ports.setdefault(device, replace(known, name=name, about=about))
+                ports.setdefault(device, replace(known, name=name, about=known.about or nature(device)))
             elif literal:
                 about = "not a serial port" if Path(name).exists() else "no such port"
                 ports.setdefault(device, Port(name, about=about, present=False))
     return sorted(ports.values(), key=lambda port: natural_key(port.name))
+
+
+def nature(device: str) -> str:
+    """What is known, for people, of a device (a resolved path) that is not on USB."""
+    return "pseudo-terminal" if is_pty(device) else ""
 
 
 def is_device(name: str) -> bool:

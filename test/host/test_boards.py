@@ -133,7 +133,8 @@ def test_a_device_that_is_not_on_usb_is_found_by_its_name(
     assert main(["devices", "--json", "--tiles", "lab.toml"]) == 0
     captured = capsys.readouterr()
     document = json.loads(captured.out)
-    assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [(str(link), 3, 4, 2)]
+    assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [("tile-01", 3, 4, 2)]
+    assert [(d["board"], d["about"]) for d in document["devices"]] == [(f"port:{link}", "pseudo-terminal")]
     assert document["missing"] == [{"tile": 4, "row": 4, "col": 3, "board": "serial:none"}]
     assert captured.err == "tile 4 (serial:none): not connected\n"
 

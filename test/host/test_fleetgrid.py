@@ -190,6 +190,17 @@ def test_whatever_is_heard_the_picture_fits_the_terminal(
     assert all(line.cell_len <= width for line in lines)
 
 
+def test_on_a_narrow_terminal_the_log_says_what_happens_and_not_where_ports_are() -> None:
+    lab, port = Lab(), "/a/folder/far/away/from/all/others/tiles/tile-03"
+    view = LiveView(lab.fleet, Grid(), Console(width=50, height=24), table=False)
+    lab.open(port)
+    for label in "49":
+        said = Heard(1.0, port, b"", TileSentence(3, 100, 1, label, "----", STATE))
+        lab.take(said)
+        view.show(1.0, [said])
+    assert view.lines(50, 24)[-1].plain.endswith(" tile   3 tile-03 shows 9, before 4")
+
+
 def test_boxes_and_lines_have_one_size_whatever_the_numbers() -> None:
     for updates in (None, 0, 999, 9999, 10_000, 999_999, 4_294_967_295):
         for age_s in (None, 0.5, 50.0, 5000.0, 1e6, 1e9):
