@@ -91,7 +91,7 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
         TilencaError: nothing could be learnt, or it does not go with what the file says of other boards.
     """
     file = args.tiles or DEFAULT
-    old = _before(file)
+    old, complaint = _before(file)
     mine = [next((b.name for b in present if is_board(b.port, p.board)), None) for p in old]
     # Boards by the names they have now.
     before = [replace(place, board=name or place.board) for place, name in zip(old, mine, strict=True)]
@@ -103,6 +103,8 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
     heard = {place.board for place in learnt.places}
     kept = [place for place in before if place.board not in heard]
     new = update(before, learnt.places, kept, fixed=args.blink)
+    if complaint:
+        _put_aside(file, complaint)
     write_tiles(file, new.places)
     for remark in new.remarks:
         warn(f"{file}: {remark}")
@@ -110,20 +112,24 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
     return learnt, {place.board: place for place in new.places}
 
 
-def _before(file: Path) -> list[Place]:
-    """What the file says so far; one that cannot be read is put aside, not lost."""
+def _before(file: Path) -> tuple[list[Place], str]:
+    """What the file says so far, and why it cannot be read, if so."""
     if not file.exists():
-        return []
+        return [], ""
     try:
-        return read_tiles(file)
+        return read_tiles(file), ""
     except UsageError as error:
-        aside = file.with_name(file.name + ".old")
-        try:
-            file.replace(aside)
-        except OSError as refusal:
-            raise UsageError(f"{file}: {refusal.strerror}; name another with --tiles") from refusal
-        warn(f"{error}: now {aside}")
-        return []
+        return [], str(error)
+
+
+def _put_aside(file: Path, complaint: str) -> None:
+    """Keeps a file that cannot be read, lest what a person wrote is lost."""
+    aside = file.with_name(file.name + ".old")
+    try:
+        file.replace(aside)
+    except OSError as error:
+        raise UsageError(f"{file}: {error.strerror}; name another with --tiles") from error
+    warn(f"{complaint.partition('; ')[0]}; it is {aside} now")
 
 
 def document(present: list[Board], found: Found, answers: dict[str, Answer]) -> dict[str, Any]:

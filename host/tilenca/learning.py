@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tilenca.asking import SILENT, Answer, ask
 from tilenca.boards import Board, tell_models
+from tilenca.boardtest import BOARD_TEST
 from tilenca.commanding import command_all
 from tilenca.errors import TilencaError
 from tilenca.fleetgrid import neighbours
@@ -58,8 +59,10 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
         tell_models(said)
         tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
-            mute = any(answer.problem == SILENT for answer in answers.values())
-            raise TilencaError(f"no tile answers{'; flash them first: tilenca flash' if mute else ''}")
+            remedy = (
+                "; flash them first: tilenca flash" if any(map(_lacks_firmware, answers.values())) else ""
+            )
+            raise TilencaError(f"no tile answers{remedy}")
         renamed = any(tile != said[name].tile for name, tile in tiles.items())
         slowest_s = max(said[name].period_ms for name in tiles) / 1000
         _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)
@@ -67,6 +70,11 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
     return Learnt(places, answers, len(boards) - len(places))
+
+
+def _lacks_firmware(answer: Answer) -> bool:
+    """Whether flashing would help: the port could be opened, and nothing that is ours spoke."""
+    return answer.problem in (SILENT, BOARD_TEST) or answer.problem.startswith("speaks protocol")
 
 
 def _ids(reader: PortReader, said: dict[str, int], assign: bool, away: Sequence[Place]) -> dict[str, int]:
