@@ -29,7 +29,7 @@ MORE: dict[str, list[str]] = {
     "tilenca set period 500": [],
     "tilenca set preset default": [],
     "python host/monitor.py": ["--seconds", "1"],
-    "tilenca monitor --record lab.jsonl": ["--seconds", "1"],
+    "tilenca monitor --record lab.jsonl": ["--seconds", "12"],
     "tilenca monitor --replay lab.jsonl --from 10 --speed 4": [],
 }
 # Tried in test_fleet.py and test_readme.py.
