@@ -2,17 +2,20 @@
 
 import argparse
 import os
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from tilenca.arguments import add_port_argument
 from tilenca.errors import NoDeviceError, UsageError
-from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, serial_ports
+from tilenca.ports import Port, describe, find_ports, is_device, is_mega, natural_key, nature, serial_ports
 from tilenca.protocol import HelloSentence
 from tilenca.streams import warn
-from tilenca.tilesfile import DEFAULT, Place, read_tiles
+from tilenca.tilesfile import DEFAULT, MAX_TILE_ID, Place, read_tiles, tile_count
+
+_SPAN = re.compile(r"([0-9]{1,3})(?:-([0-9]{1,3}))?")
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ def board_name(port: Port, shared: Iterable[str]) -> str:
         return f"serial:{port.serial_number}"
     if port.location:
         return f"location:{port.location}"
-    return f"port:{Path(port.name).absolute()}"
+    return f"port:{Path(port.name).parent.resolve() / Path(port.name).name}"
 
 
 def shared_serials(ports: Iterable[Port]) -> set[str]:
@@ -104,10 +107,18 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_places(path: Path | None) -> list[Place]:
-    """The tiles of the file that `--tiles` names, else of the one in this folder, else none."""
+    """The tiles of the file that `--tiles` names, else of the one in this folder, else none.
+
+    Raises:
+        UsageError: the file is wrong, or lists nothing.
+    """
     if path is None and not DEFAULT.exists():
         return []
-    return read_tiles(path or DEFAULT)
+    if places := read_tiles(path or DEFAULT):
+        return places
+    raise UsageError(
+        f"{path or DEFAULT}: lists no tile; write it with `tilenca devices --learn`, or remove it"
+    )
 
 
 def match_ports(patterns: Sequence[str]) -> list[Board]:
@@ -123,24 +134,30 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
         path: of `--tiles`.
 
     Raises:
-        NoDeviceError: nothing of it is there.
+        NoDeviceError: no port that is meant is there, and no file lists a tile.
         UsageError: the file is wrong.
     """
     places = load_places(path)
     on_usb = [describe(info) for info in serial_ports()]
     if patterns or not places:
         return Found(match(find_ports(patterns), places, on_usb))
-    names = [place.board.partition(":")[2] for place in places if place.board.startswith("port:")]
-    devices = {os.path.realpath(name): Port(name) for name in names if is_device(name)}
+    names = [_short(place.board.partition(":")[2]) for place in places if place.board.startswith("port:")]
+    paths = {os.path.realpath(name): name for name in names if is_device(name)}
+    devices = {device: Port(name, about=nature(device)) for device, name in paths.items()}
     # What the file lists by its USB socket may be a board whose ids are not known here.
     listed = [p for p in on_usb if is_mega(p) or any(is_board(p, place.board) for place in places)]
     devices |= {os.path.realpath(port.name): port for port in listed}
-    listed = list(devices.values()) or find_ports()
-    boards = match(sorted(listed, key=lambda port: natural_key(port.name)), places, on_usb)
+    boards = match(sorted(devices.values(), key=lambda port: natural_key(port.name)), places, on_usb)
     known_places = {board.place for board in boards}
     missing = [place for place in places if place not in known_places]
     others = [board for board in boards if board.place is None]
     return Found([board for board in boards if board.place is not None], missing, others)
+
+
+def _short(name: str) -> str:
+    """A path as it would be named here: from this folder on, if it is in it."""
+    path = Path(name)
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else name
 
 
 def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
@@ -152,11 +169,16 @@ def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
     """
     found = find_boards(patterns, path)
     if not found.boards:
-        raise NoDeviceError(
-            f"none of the {len(found.missing)} tiles that {path or DEFAULT} lists is connected; "
-            "`tilenca devices` lists what is on USB"
-        )
+        raise none_connected(found, path)
     return found
+
+
+def none_connected(found: Found, path: Path | None) -> NoDeviceError:
+    """The complaint that of the fleet nothing is there."""
+    listed = tile_count(len(found.missing))
+    return NoDeviceError(
+        f"of the {listed} that {path or DEFAULT} lists, none is connected; connect it, or give --port"
+    )
 
 
 def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | None) -> None:
@@ -168,6 +190,18 @@ def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | Non
         )
 
 
+def tell_models(hellos: Mapping[str, HelloSentence]) -> None:
+    """Says which tiles, by their ports, run another model than most: they are as good as not there."""
+    counted = Counter(hello.model_id for hello in hellos.values())
+    most = max(counted, key=lambda model: counted[model], default=0)
+    for port, hello in hellos.items():
+        if hello.model_id != most:
+            warn(
+                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; they do "
+                f"not hear each other; flash it: tilenca flash --port {port}"
+            )
+
+
 def tile_numbers(text: str) -> set[int]:
     """The tile ids of a list like `3,7,9-12`.
 
@@ -176,8 +210,9 @@ def tile_numbers(text: str) -> set[int]:
     """
     numbers: set[int] = set()
     for part in text.split(","):
-        first, _, last = part.strip().partition("-")
-        if not (first.isdecimal() and (last.isdecimal() or "-" not in part)) or int(last or first) > 255:
-            raise UsageError(f"'{text}' is not a list of tiles such as 3,7,9-12")
-        numbers.update(range(int(first), int(last or first) + 1))
+        match = _SPAN.fullmatch(part.strip())
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+        if not first <= last <= MAX_TILE_ID:
+            raise UsageError(f"'{text}' is not a list of tiles such as 3,7,9-12, from 0 to {MAX_TILE_ID}")
+        numbers.update(range(first, last + 1))
     return numbers

@@ -6,16 +6,28 @@ Without --ask and --learn nothing is opened: opening its port may reset a Mega.
 import argparse
 import json
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from tilenca.asking import Answer, ask_all
-from tilenca.boards import Board, Found, add_fleet_arguments, find_boards, match_ports, tell_contradiction
-from tilenca.errors import UsageError
-from tilenca.learning import learn
+from tilenca.boards import (
+    Board,
+    Found,
+    add_fleet_arguments,
+    find_boards,
+    is_board,
+    match_ports,
+    none_connected,
+    tell_contradiction,
+    tell_models,
+)
+from tilenca.errors import TilencaError, UsageError
+from tilenca.learning import Learnt, learn
 from tilenca.ports import natural_key
 from tilenca.streams import warn
 from tilenca.tables import table
-from tilenca.tilesfile import DEFAULT, Place, write_tiles
+from tilenca.tilesfile import DEFAULT, Place, read_tiles, tile_count, write_tiles
+from tilenca.tilesupdate import update
 
 HEADER = ("PORT", "TILE", "PLACE", "USB ID", "BOARD", "FIRMWARE", "WHAT")
 
@@ -27,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--learn",
         action="store_true",
-        help="find out which tile is where, and write the file of tiles anew with that",
+        help="find out which tile is where, and write it to the file of tiles",
     )
     parser.add_argument(
         "--blink", action="store_true", help="with --learn: you say where each blinking tile lies"
@@ -43,8 +55,6 @@ def run(args: argparse.Namespace) -> int:
     for option in ("blink", "assign"):
         if getattr(args, option) and not args.learn:
             raise UsageError(f"--{option} does nothing without --learn; add it, or leave --{option} out")
-    # What is learnt replaces the file, whatever it says.
-    file = args.tiles or DEFAULT
     found = Found(match_ports(args.port)) if args.learn else find_boards(args.port, args.tiles)
     everything = sorted(found.boards + found.others, key=lambda board: natural_key(board.port.name))
     present = [board for board in everything if board.port.present]
@@ -56,22 +66,70 @@ def run(args: argparse.Namespace) -> int:
     answers: dict[str, Answer] = {}
     left_out = 0
     if args.learn:
-        learnt = learn(present, args.blink, args.assign)
-        write_tiles(file, learnt.places)
-        warn(f"{file}: {len(learnt.places)} tiles")
+        learnt, places = _learn(args, present)
         answers, left_out = learnt.answers, learnt.left_out
-        places = {place.board: place for place in learnt.places}
         present = [replace(board, place=places.get(board.name)) for board in present]
     elif args.ask:
         answers = ask_all([board.port.name for board in present], "tilenca devices")
         for board in present:
             tell_contradiction(board.port.name, board.tile, answers[board.port.name].hello)
+        tell_models({name: answer.hello for name, answer in answers.items() if answer.hello})
         left_out = sum(answer.hello is None for answer in answers.values())
     if args.json:
         print(json.dumps(document(present, found, answers), indent=2))
     else:
         print(table(HEADER, [_row(board, answers.get(board.port.name)) for board in present]))
+    if not present:
+        raise none_connected(found, args.tiles)
     return 1 if left_out else 0
+
+
+def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict[str, Place]]:
+    """Learns where the boards are, and writes that; also returns the places by the boards' names.
+
+    Raises:
+        TilencaError: nothing could be learnt, or it does not go with what the file says of other boards.
+    """
+    file = args.tiles or DEFAULT
+    old, complaint = _before(file)
+    mine = [next((b.name for b in present if is_board(b.port, p.board)), None) for p in old]
+    # Boards by the names they have now.
+    before = [replace(place, board=name or place.board) for place, name in zip(old, mine, strict=True)]
+    away = [place for place, name in zip(old, mine, strict=True) if name is None]
+    learnt = learn(present, args.blink, args.assign, away)
+    if not learnt.places:
+        state = "is left as it was" if file.exists() else "is not written"
+        raise TilencaError(f"no tile was given a place: {file} {state}; learn again")
+    heard = {place.board for place in learnt.places}
+    kept = [place for place in before if place.board not in heard]
+    new = update(before, learnt.places, kept, fixed=args.blink)
+    if complaint:
+        _put_aside(file, complaint)
+    write_tiles(file, new.places)
+    for remark in new.remarks:
+        warn(f"{file}: {remark}")
+    warn(f"{file}: {tile_count(len(new.places))}")
+    return learnt, {place.board: place for place in new.places}
+
+
+def _before(file: Path) -> tuple[list[Place], str]:
+    """What the file says so far, and why it cannot be read, if so."""
+    if not file.exists():
+        return [], ""
+    try:
+        return read_tiles(file), ""
+    except UsageError as error:
+        return [], str(error)
+
+
+def _put_aside(file: Path, complaint: str) -> None:
+    """Keeps a file that cannot be read, lest what a person wrote is lost."""
+    aside = file.with_name(file.name + ".old")
+    try:
+        file.replace(aside)
+    except OSError as error:
+        raise UsageError(f"{file}: {error.strerror}; name another with --tiles") from error
+    warn(f"{complaint.partition('; ')[0]}; it is {aside} now")
 
 
 def document(present: list[Board], found: Found, answers: dict[str, Answer]) -> dict[str, Any]:

@@ -1,11 +1,9 @@
 """`tilenca flash`: one firmware image into many boards, side by side; who has it already is left in peace."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from tilenca.arguments import count, positive
 from tilenca.asking import PATIENCE_S, SILENT, Answer, ask_all
@@ -14,18 +12,16 @@ from tilenca.boards import Board, Found, add_fleet_arguments, find_fleet, tile_n
 from tilenca.building import FIRMWARE_HEX, build
 from tilenca.errors import NoDeviceError
 from tilenca.flashmemory import failed_boards, remember
+from tilenca.flashresult import GOOD, Row, tell
 from tilenca.flashview import Display, display
 from tilenca.ihex import Image, check_image
 from tilenca.programming import Outcome, program_all
 from tilenca.streams import warn
-from tilenca.tables import table
 from tilenca.tilesfile import Place
 
 # Three of avrdude's attempts to get an answer, which are 5 s apart.
 TIMEOUT_S = 12.0
-GOOD = {"flashed", "skipped"}
 USER = "tilenca flash"
-HEADER = ("PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,30 +43,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="give a board up after S seconds without progress (default: %(default)g)",
     )
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
-
-
-@dataclass
-class Row:
-    """What became of one tile: `board` is what `tiles.toml` calls it, `firmware_id` what it says it runs."""
-
-    port: str | None
-    result: str = "interrupted"
-    seconds: float = 0.0
-    error: str | None = "interrupted; flash it again"
-    tile: int | None = None
-    board: str = ""
-    attempts: int = 0
-    firmware_id: str | None = None
-
-    def end(self, result: str, error: str | None = None) -> None:
-        """Sets what became of it."""
-        self.result, self.error = result, error
-
-    def hear(self, answer: Answer) -> None:
-        """Takes what the tile says of itself."""
-        if answer.hello:
-            self.firmware_id = f"{answer.hello.firmware_id:08X}"
-            self.tile = self.tile or answer.hello.tile or None
 
 
 @dataclass
@@ -181,7 +153,14 @@ def run(args: argparse.Namespace) -> int:
     if not everything:
         warn("nothing to do: no board of those failed or was missing when last flashed")
     remember({row.board: row.result in GOOD for row in everything})
-    return _tell(everything, args.json, interrupted)
+    tell(everything, args.json)
+    if interrupted:
+        raise KeyboardInterrupt
+    if all(row.result in GOOD for row in everything):
+        return 0
+    ports = ", with the same --port" if args.port else ""
+    warn(f"to try again those that failed or were missing: tilenca flash --failed{ports}")
+    return 1
 
 
 def _failed(found: Found) -> tuple[list[Board], list[Place]]:
@@ -211,42 +190,10 @@ def _program(args: argparse.Namespace, tool: Avrdude, image: Image, rows: dict[s
     """Programs the boards and fills their rows in; whether it was interrupted."""
     number = f"{len(rows)} board{'s' * (len(rows) != 1)}"
     warn(f"image {image.path}: {image.size} bytes, firmware id {image.firmware_id:08X}")
-    warn(f"writing it to {number} with {tool.program}")
+    whom = number if args.force else f"those of {number} that do not run it yet"
+    warn(f"writing it to {whom}, with {tool.program}")
     titles = {name: name + (f" tile {row.tile}" if row.tile else "") for name, row in rows.items()}
     with display(titles) as shown:
         flashing = _Flashing(args, tool, image, rows, shown)
         flashing.run()
     return flashing.interrupted
-
-
-def _tell(rows: list[Row], as_json: bool, interrupted: bool) -> int:
-    if as_json:
-        print(json.dumps({"tiles": [_document(row) for row in rows]}, indent=2))
-    elif rows:
-        lines = [
-            [
-                row.port or "-",
-                str(row.tile or "-"),
-                row.result,
-                f"{row.seconds:.1f}",
-                row.firmware_id or "-",
-                row.error or "",
-            ]
-            for row in rows
-        ]
-        print(table(HEADER, lines))
-    if interrupted:
-        raise KeyboardInterrupt
-    if not rows:
-        return 0
-    results = [row.result for row in rows]
-    skipped = f", {results.count('skipped')} ran it already" if "skipped" in results else ""
-    warn(f"{results.count('flashed')} of {len(results)} flashed{skipped}")
-    if all(row.result in GOOD for row in rows):
-        return 0
-    warn("to try again those that failed or were missing: tilenca flash --failed, with the same ports")
-    return 1
-
-
-def _document(row: Row) -> dict[str, Any]:
-    return vars(row)

@@ -16,6 +16,7 @@ from tilenca.streams import warn
 SPANS = {
     "asking": (0.0, 0.0),
     "connecting": (0.0, 0.0),
+    "trying again": (0.0, 0.0),
     "writing": (0.0, 0.5),
     "verifying": (0.5, 0.45),
     "confirming": (0.95, 0.0),

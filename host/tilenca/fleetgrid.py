@@ -25,6 +25,7 @@ class Mark(Enum):
     WELL = "frames arrive"
     FAILING = "many frames get lost"
     DEAD = "a tile is there and not heard"
+    FOREIGN = "a tile with another model is there"
 
 
 @dataclass(frozen=True)
@@ -64,13 +65,14 @@ def trouble(view: TileView, now_s: float) -> str:
 
 
 class Grid:
-    """Finds each port's place: in `tiles.toml`, else by what tiles say of their neighbours, else in a row."""
+    """Finds each port's place: in `tiles.toml`, else by what tiles say or said of others, else in a row."""
 
     def __init__(self, places: Sequence[Place] = ()) -> None:
         """Takes the places of the file, if there is one."""
         self._places = {place.tile: (place.row, place.col) for place in places}
         self._tiles: dict[str, int] = {}
         self._heard: dict[int, dict[str, tuple[int, str]]] = {}
+        self._known: dict[int, dict[str, tuple[int, str]]] = {}
         self._cells: dict[int, Position] = {}
 
     def know(self, found: Found) -> None:
@@ -106,7 +108,13 @@ class Grid:
         heard = neighbours(fleet)
         if heard != self._heard:
             self._heard = heard
-            self._cells = arrange(heard).cells
+            # A neighbour that is not heard any more still lies there, unless tiles say otherwise by now.
+            self._known |= {tile: self._known.get(tile, {}) | sides for tile, sides in heard.items()}
+            found = arrange(self._known)
+            if found.conflicts:
+                self._known = heard
+                found = arrange(heard)
+            self._cells = found.cells
         return self._cells
 
 
@@ -155,9 +163,10 @@ def _colour(view: TileView) -> tuple[int, int, int]:
 
 
 def _mark(view: TileView, side: str) -> Mark:
+    health = view.health.get(side)
     if view.tile is None or side not in view.tile.links:
-        return Mark.NONE
-    good = view.health[side].good if side in view.health else None
+        return Mark.FOREIGN if view.tile and health and health.foreign else Mark.NONE
+    good = health.good if health else None
     return Mark.FAILING if good is not None and good < FAILING else Mark.WELL
 
 

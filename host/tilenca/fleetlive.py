@@ -3,6 +3,7 @@
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
+from pathlib import PurePath
 from textwrap import wrap
 
 from rich.console import Console, ConsoleOptions, OverflowMethod, RenderResult
@@ -11,7 +12,7 @@ from rich.segment import Segment
 from rich.text import Text
 
 from tilenca.fleetgrid import Cell, Grid, Position
-from tilenca.fleetnews import News, Reporter
+from tilenca.fleetnews import News, Reporter, news_line
 from tilenca.fleetpicture import draw_fitting
 from tilenca.fleetview import clock_text, live_table
 from tilenca.telemetry import Event, Fleet
@@ -99,9 +100,8 @@ class LiveView:
         return Text("  ".join(filter(None, parts)), style="bold")
 
     def _log_line(self, news: News) -> Text:
-        tile = "-" if news.tile is None else str(news.tile)
-        style = "yellow" if news.bad else ""
-        return Text(f"{clock_text(news.time_s)} tile {tile:>3} {news.port} {news.text}", style)
+        # The folder of a port tells nothing, and on a narrow terminal hides what is told.
+        return Text(news_line(news, PurePath(news.port).name), "yellow" if news.bad else "")
 
 
 class _Screen:

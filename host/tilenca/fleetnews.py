@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tilenca.boardtest import BOARD_TEST
-from tilenca.fleetview import port_words
+from tilenca.fleetview import clock_text, port_words
 from tilenca.linkhealth import FAILING, WELL
 from tilenca.protocol import (
     AckSentence,
@@ -29,6 +29,12 @@ class News:
     bad: bool = False
 
 
+def news_line(news: News, port: str | None = None) -> str:
+    """News as one line, the port by another name if one is given."""
+    tile = "-" if news.tile is None else str(news.tile)
+    return f"{clock_text(news.time_s)} tile {tile:>3} {port or news.port} {news.text}"
+
+
 class Reporter:
     """Watches a fleet and tells what is new with each event."""
 
@@ -37,6 +43,7 @@ class Reporter:
         self._label: dict[str, str] = {}
         self._links: dict[str, str] = {}
         self._failing: set[tuple[str, str]] = set()
+        self._foreign: set[tuple[str, str]] = set()
 
     def take(self, event: Event) -> list[News]:
         """The news of an event that the fleet has just taken."""
@@ -56,11 +63,15 @@ class Reporter:
             case HelloSentence() as hello:
                 self._label[event.port], self._links[event.port] = "", "----"
                 self._failing -= {(event.port, side) for side in "NESW"}
+                self._foreign -= {(event.port, side) for side in "NESW"}
                 return [(f"started: {words(hello)}", False)]
             case TileSentence() as tile:
                 return [*self._label_news(event.port, tile), *self._link_news(event.port, tile)]
             case LinkSentence() as link:
-                return self._health_news(event.port, link, view)
+                return [
+                    *self._foreign_news(event.port, link, view),
+                    *self._health_news(event.port, link, view),
+                ]
             case ErrorSentence() | NakSentence() | OtherVersionSentence() as complaint:
                 return [(words(complaint), True)]
             case AckSentence() as done:
@@ -82,6 +93,16 @@ class Reporter:
         come = "".join(new for old, new in zip(before, tile.links, strict=True) if old == "-" != new)
         lost = [(f"lost its neighbour on {' '.join(gone)}", True)] if gone else []
         return [*lost, *([(f"hears a neighbour on {' '.join(come)}", False)] if come else [])]
+
+    def _foreign_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
+        health, key = view.health.get(link.side), (port, link.side)
+        foreign = health is not None and health.foreign
+        if foreign == (key in self._foreign):
+            return []
+        self._foreign ^= {key}
+        if foreign:
+            return [(f"a tile with another model is on {link.side}: flash both (tilenca flash)", True)]
+        return [(f"no other model is on {link.side} any more", False)]
 
     def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
         health, key = view.health.get(link.side), (port, link.side)

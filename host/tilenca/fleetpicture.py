@@ -12,7 +12,13 @@ from tilenca.picture import digit, led_style
 
 INSIDE = 11
 BOX_WIDTH, BOX_HEIGHT, LINE_WIDTH = INSIDE + 2, 5, 10
-STYLES = {Mark.NONE: "dim", Mark.WELL: "green", Mark.FAILING: "bold yellow", Mark.DEAD: "bold red"}
+STYLES = {
+    Mark.NONE: "dim",
+    Mark.WELL: "green",
+    Mark.FAILING: "bold yellow",
+    Mark.DEAD: "bold red",
+    Mark.FOREIGN: "bold magenta",
+}
 BOX = "dim"
 TROUBLE = "yellow"
 STALE_S = 1.0
@@ -31,8 +37,8 @@ def _charset(corners: str, across: str, down: str) -> Charset:
     return Charset(corners, dict(zip(Mark, across, strict=True)), dict(zip(Mark, down, strict=True)))
 
 
-LINES = _charset("┌┐└┘", "─━╍╳", "│┃╏╳")  # noqa: RUF001
-ASCII = _charset("++++", "-=~x", "|#:x")
+LINES = _charset("┌┐└┘", "─━╍╳?", "│┃╏╳?")  # noqa: RUF001
+ASCII = _charset("++++", "-=~x?", "|#:x?")
 
 
 def short(number: int | None) -> str:

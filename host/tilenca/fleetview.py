@@ -104,7 +104,7 @@ def summary(tiles: Iterable[TileView]) -> str:
             str(view.sentences),
             str(view.damaged),
             str(view.outages),
-            view.reason or (BOARD_TEST if view.board_test else ""),
+            ("" if view.is_open else view.reason) or (BOARD_TEST if view.board_test else ""),
         ]
         for view in tiles
     ]

@@ -2,11 +2,12 @@
 
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from tilenca.asking import Answer, ask
-from tilenca.boards import Board
+from tilenca.asking import SILENT, Answer, ask
+from tilenca.boards import Board, tell_models
+from tilenca.boardtest import BOARD_TEST
 from tilenca.commanding import command_all
 from tilenca.errors import TilencaError
 from tilenca.fleetgrid import neighbours
@@ -15,7 +16,8 @@ from tilenca.portreader import PortReader
 from tilenca.protocol import MAX_BLINK_S, blink_command, set_command
 from tilenca.streams import warn
 from tilenca.telemetry import Fleet
-from tilenca.tilesfile import MAX_TILE_ID, Place
+from tilenca.tilesfile import FAR, MAX_TILE_ID, Place
+from tilenca.wording import whole_number
 
 USER = "tilenca devices --learn"
 # Every tile tells of its four sides, one after another: within some of its periods.
@@ -34,13 +36,14 @@ class Learnt:
     left_out: int
 
 
-def learn(boards: Sequence[Board], blink: bool, assign: bool) -> Learnt:
+def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Place] = ()) -> Learnt:
     """Asks the tiles who they are and who is on which side; where that is not enough, the person.
 
     Args:
         boards: the boards.
         blink: let each tile blink and ask the person for its place, whatever tiles say.
         assign: give tiles without an id of their own a free one.
+        away: tiles that are not here now: their ids are not free, nor are their places.
 
     Raises:
         TilencaError: tiles have no id of their own, or places cannot be found out.
@@ -53,19 +56,28 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool) -> Learnt:
             if answer.hello is None:
                 warn(f"{name}: {answer.problem}; left out")
         said = {name: answer.hello for name, answer in answers.items() if answer.hello}
-        tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign)
+        tell_models(said)
+        tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
-            raise TilencaError("no tile answers; flash them first: tilenca flash")
+            remedy = (
+                "; flash them first: tilenca flash" if any(map(_lacks_firmware, answers.values())) else ""
+            )
+            raise TilencaError(f"no tile answers{remedy}")
         renamed = any(tile != said[name].tile for name, tile in tiles.items())
         slowest_s = max(said[name].period_ms for name in tiles) / 1000
         _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)
-        cells = _cells(reader, tiles, fleet, blink)
+        cells = _asked(reader, tiles, away) if blink else _heard(tiles, fleet)
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
     return Learnt(places, answers, len(boards) - len(places))
 
 
-def _ids(reader: PortReader, said: dict[str, int], assign: bool) -> dict[str, int]:
+def _lacks_firmware(answer: Answer) -> bool:
+    """Whether flashing would help: the port could be opened, and nothing that is ours spoke."""
+    return answer.problem in (SILENT, BOARD_TEST) or answer.problem.startswith("speaks protocol")
+
+
+def _ids(reader: PortReader, said: dict[str, int], assign: bool, away: Sequence[Place]) -> dict[str, int]:
     """Each port's tile id; those that have none of their own get one, if they may."""
     tiles: dict[str, int] = {}
     lacking = []
@@ -77,11 +89,15 @@ def _ids(reader: PortReader, said: dict[str, int], assign: bool) -> dict[str, in
     if not lacking:
         return tiles
     if not assign:
-        raise TilencaError(
-            f"no id of their own have the tiles behind {', '.join(lacking)}; add --assign to give them free "
-            "ones, or set them with `tilenca set id N --port PORT`"
+        them = ", ".join(
+            f"{name} ({f'{said[name]}, as another' if said[name] else 'none'})" for name in lacking
         )
-    free = (tile for tile in range(1, MAX_TILE_ID + 1) if tile not in tiles.values())
+        raise TilencaError(
+            f"tiles without an id of their own: {them}; add --assign to give them free ones, or set each "
+            "with `tilenca set id N --port PORT`"
+        )
+    used = {*tiles.values(), *(place.tile for place in away)}
+    free = (tile for tile in range(1, MAX_TILE_ID + 1) if tile not in used)
     fresh = dict(zip(lacking, free, strict=False))
     orders = {name: set_command("id", tile) for name, tile in fresh.items()}
     for name, reply in command_all(reader, orders, "SET").items():
@@ -108,11 +124,8 @@ def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float) 
             return
 
 
-def _cells(
-    reader: PortReader, tiles: Mapping[str, int], fleet: Fleet, blink: bool
-) -> dict[int, tuple[int, int]]:
-    if blink:
-        return _asked(reader, tiles)
+def _heard(tiles: Mapping[str, int], fleet: Fleet) -> dict[int, tuple[int, int]]:
+    """Finds each tile's place from what they say of their neighbours."""
     alone: dict[int, dict[str, tuple[int, str]]] = {tile: {} for tile in tiles.values()}
     found = arrange(alone | neighbours(fleet))
     if found.conflicts:
@@ -130,32 +143,36 @@ def _cells(
     return cells
 
 
-def _asked(reader: PortReader, tiles: Mapping[str, int]) -> dict[int, tuple[int, int]]:
+def _asked(reader: PortReader, tiles: Mapping[str, int], away: Sequence[Place]) -> dict[int, tuple[int, int]]:
     """Lets one tile after another blink, and takes its place from standard input."""
+    taken = {(place.row, place.col) for place in away if place.tile not in tiles.values()}
     cells: dict[int, tuple[int, int]] = {}
     for name, tile in tiles.items():
         reply = command_all(reader, {name: blink_command(MAX_BLINK_S)}, "BLINK")[name]
         if reply.problem:
             warn(f"{name}: {reply.problem}; left out")
             continue
-        place = _typed(tile, name, cells)
+        place = _typed(tile, name, taken | set(cells.values()))
         command_all(reader, {name: blink_command(0)}, "BLINK")
         if place:
             cells[tile] = place
     return cells
 
 
-def _typed(tile: int, name: str, cells: Mapping[int, tuple[int, int]]) -> tuple[int, int] | None:
+def _typed(tile: int, name: str, taken: Set[tuple[int, int]]) -> tuple[int, int] | None:
+    """A place from standard input; None if there is none."""
     while True:
         warn(f"tile {tile} ({name}) blinks. Its row and column, such as 0 3 (nothing: leave it out)?")
-        line = sys.stdin.readline()
-        words = line.replace(",", " ").split()
+        words = sys.stdin.readline().replace(",", " ").split()
         if not words:
             return None
-        if len(words) == 2 and all(word.removeprefix("-").isdecimal() for word in words):
-            place = int(words[0]), int(words[1])
-            if place not in cells.values():
-                return place
-            warn("another tile lies there")
-        else:
-            warn("two numbers, please")
+        numbers = [whole_number(word) for word in words]
+        match numbers:
+            case [int() as row, int() as col] if abs(row) > FAR or abs(col) > FAR:
+                warn(f"row and column are from -{FAR} to {FAR}")
+            case [int() as row, int() as col] if (row, col) in taken:
+                warn("another tile lies there")
+            case [int() as row, int() as col]:
+                return row, col
+            case _:
+                warn("two numbers, please")

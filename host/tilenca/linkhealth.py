@@ -36,3 +36,8 @@ class LinkHealth:
         # A damaged frame leaves a gap in the sequence as one that never came: both are in `lost`.
         expected = arrived + last.lost - first.lost
         return arrived / expected if expected > 0 else None
+
+    @property
+    def foreign(self) -> bool:
+        """Whether frames of another model came."""
+        return len(self._reports) > 1 and self._reports[-1].foreign > self._reports[0].foreign

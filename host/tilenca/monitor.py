@@ -1,8 +1,6 @@
 """`tilenca monitor`: tiles in their places as a live picture, a log, or JSON; recorded, played back."""
 
 import argparse
-import fnmatch
-import json
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -16,16 +14,17 @@ from tilenca.arguments import not_negative
 from tilenca.boards import Found, add_fleet_arguments, find_boards, find_fleet, load_places
 from tilenca.errors import NoDeviceError, TilencaError, UsageError
 from tilenca.fleetgrid import Grid
+from tilenca.fleetlines import EventLines, JsonLines, NewsLines
 from tilenca.fleetlive import LiveView
-from tilenca.fleetview import log_line, summary
+from tilenca.fleetview import summary
 from tilenca.interrupts import held_back
 from tilenca.keyboard import Keyboard, is_ours
 from tilenca.portreader import PortReader
 from tilenca.ports import MAGIC
-from tilenca.recording import Recorder, format_event, read_recording
+from tilenca.recording import Choice, Recorder, format_event
 from tilenca.replay import KEYS, Player
 from tilenca.streams import warn
-from tilenca.telemetry import Event, Fleet, Heard, as_json
+from tilenca.telemetry import Event, Fleet
 
 # The time, and what has come by then.
 Events: TypeAlias = Iterator[tuple[float, list[Event]]]
@@ -40,7 +39,10 @@ PATIENCE_S = 8.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add_fleet_arguments(parser)
-    parser.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
+    manner = parser.add_mutually_exclusive_group()
+    manner.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
+    manner.add_argument("--log", action="store_true", help="one line for whatever is new, no picture")
+    manner.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
     parser.add_argument(
         "--seconds", type=not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
     )
@@ -67,7 +69,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="with --replay: start S seconds after the recording's beginning",
     )
-    parser.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -79,9 +80,12 @@ def run(args: argparse.Namespace) -> int:
     try:
         with ExitStack() as stack:
             if args.replay:
-                player = _player(args)
+                choice = Choice(args.replay, args.port)
+                speed = 1.0 if args.speed is None else args.speed
+                player = Player(lambda: iter(choice), speed, TICK_S, args.start or 0.0)
                 display = _display(args, fleet, Grid(load_places(args.tiles)), stack, player)
-                _show(iter(player), fleet, display, None, args.seconds)
+                if _show(iter(player), fleet, display, None, args.seconds):
+                    choice.complain(args.start or 0.0)
             else:
                 source, grid = _listen(args, stack)
                 record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
@@ -105,17 +109,19 @@ def _show(
     display: Display,
     record: Recorder | None,
     seconds: float | None,
-) -> None:
+) -> bool:
+    """Shows all that comes; whether it came to its end before `seconds` were over."""
     began_s: float | None = None
     for now_s, events in source:
         began_s = now_s if began_s is None else began_s
         if seconds is not None and now_s - began_s > seconds:
-            return
+            return False
         for event in events:
             fleet.take(event)
         if record and events:
             record.write(map(format_event, events))
         display.show(now_s, events)
+    return True
 
 
 def _listen(args: argparse.Namespace, stack: ExitStack) -> tuple[Events, Grid]:
@@ -169,50 +175,18 @@ def _awaited(args: argparse.Namespace) -> Found:
         time.sleep(TICK_S)
 
 
-def _player(args: argparse.Namespace) -> Player:
-    """Plays the events of the ports that match."""
-
-    def chosen() -> Iterator[Event]:
-        for event in read_recording(args.replay):
-            if not args.port or any(fnmatch.fnmatchcase(event.port, pattern) for pattern in args.port):
-                yield event
-
-    speed = 1.0 if args.speed is None else args.speed
-    return Player(chosen, speed, TICK_S, args.start or 0.0)
-
-
-class _JsonLines:
-    """Good sentences as JSON on stdout, all else on stderr."""
-
-    def show(self, now_s: float, events: Sequence[Event]) -> None:
-        for event in events:
-            if isinstance(event, Heard) and event.sentence is not None:
-                print(json.dumps(as_json(event)))
-            else:
-                warn(log_line(event))
-        if events:
-            print(end="", flush=True)
-
-
-class _LogLines:
-    """Every event as a line on stdout."""
-
-    def show(self, now_s: float, events: Sequence[Event]) -> None:
-        for event in events:
-            print(log_line(event))
-        if events:
-            print(end="", flush=True)
-
-
 def _display(
     args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack, player: Player | None = None
 ) -> Display:
     """JSON if so asked; on a terminal the live picture, with keys for what is replayed; else lines."""
+    start_s = args.start or 0.0
     if args.json:
-        return _JsonLines()
+        return JsonLines(start_s)
+    if args.log:
+        return NewsLines(start_s, fleet)
     console = Console()
     if not console.is_terminal or console.is_dumb_terminal:
-        return _LogLines()
+        return EventLines(start_s)
     about = f"replay of {args.replay}" if player else ""
     display = LiveView(fleet, grid, console, args.table, about)
     if player and sys.stdin and is_ours(sys.stdin.fileno()):

@@ -48,7 +48,7 @@ def _command(process: Path) -> str:
 
 
 class PortBusyError(Exception):
-    """Another tilenca command works on the port; the message says which."""
+    """Somebody else has the port; the message says who."""
 
 
 @contextmanager

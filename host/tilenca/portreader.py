@@ -18,24 +18,27 @@ from tilenca.telemetry import Event, Heard, LineReader, PortNews
 
 RETRY_S = 0.5
 WRITE_S = 1.0
-WAS_RESET = "opening it has reset the tile, which Linux cannot avoid the first time after it was plugged in"
+WAS_RESET = "opening it has reset the tile"
 
 
 class _OpenPort:
     """A port that can be read, and what was read of its present line."""
 
-    def __init__(self, name: str, user: str) -> None:
-        """Opens it for us alone; others are told that `user` has it.
+    def __init__(self, name: str, user: str, holder: str | None) -> None:
+        """Opens it for us alone, unless `holder` has it open; others are told that `user` has it.
 
         Raises:
-            PortBusyError: another tilenca command has it.
+            PortBusyError: another tilenca command has it, or the holder.
             OSError: it cannot be opened (pyserial's errors are OSErrors).
         """
         self.name = name
         self.lines = LineReader()
         self._resources = ExitStack()
         with self._resources:
+            # Of our own commands the lock tells more than their process.
             self._resources.enter_context(port_lock(name, user))
+            if holder:
+                raise PortBusyError(holder)
             device = serial.Serial(name, HOST_BAUD, timeout=0, write_timeout=WRITE_S, exclusive=True)
             self._resources.callback(device.close)
             self._device = device
@@ -150,12 +153,10 @@ class PortReader:
             return "no such port; waiting for it"
         if reason := denial(name):
             return reason
-        if holder:
-            return f"busy: {holder} has it open; waiting for it"
         try:
-            port = _OpenPort(name, self._user)
+            port = _OpenPort(name, self._user, holder)
         except PortBusyError as busy:
-            return f"busy: {busy} works on it; waiting for it"
+            return f"busy: {busy} has it open; waiting for it"
         except (OSError, termios.error) as error:
             return f"cannot be opened ({error}); waiting for it"
         self._open[name] = port

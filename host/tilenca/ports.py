@@ -44,6 +44,9 @@ ADAPTERS: dict[tuple[int, int], Adapter] = {
 # pyserial stumbles over a board that is pulled while it is being looked at.
 LOOKS, LOOK_AGAIN_S = 5, 0.1
 
+# The major number of /dev/null, /dev/zero and their like.
+MEMORY = 1
+
 MAGIC = re.compile(r"[*?[]")
 
 
@@ -154,20 +157,25 @@ def _named(patterns: Sequence[str], by_device: dict[str, Port]) -> list[Port]:
             device = os.path.realpath(name)
             known = by_device.get(device, Port(name))
             if is_device(name):
-                about = known.about or ("pseudo-terminal" if is_pty(device) else "")
-                ports.setdefault(device, replace(known, name=name, about=about))
+                ports.setdefault(device, replace(known, name=name, about=known.about or nature(device)))
             elif literal:
                 about = "not a serial port" if Path(name).exists() else "no such port"
                 ports.setdefault(device, Port(name, about=about, present=False))
     return sorted(ports.values(), key=lambda port: natural_key(port.name))
 
 
+def nature(device: str) -> str:
+    """What is known, for people, of a device (a resolved path) that is not on USB."""
+    return "pseudo-terminal" if is_pty(device) else ""
+
+
 def is_device(name: str) -> bool:
-    """Whether `name` is a character device now."""
+    """Whether `name` is a character device now, and not one without anything behind it, such as /dev/null."""
     try:
-        return stat.S_ISCHR(Path(name).stat().st_mode)
+        about = Path(name).stat()
     except OSError:
         return False
+    return stat.S_ISCHR(about.st_mode) and os.major(about.st_rdev) != MEMORY
 
 
 def is_pty(device: str) -> bool:
@@ -179,6 +187,8 @@ def denial(name: str) -> str | None:
     """Why this user may not use a port and what to do about it, or None if they may."""
     if os.access(name, os.R_OK | os.W_OK):
         return None
+    if is_pty(os.path.realpath(name)):
+        return "permission denied; these emulated tiles are another user's: serve your own"
     try:
         group = grp.getgrgid(Path(name).stat().st_gid).gr_name
     except (OSError, KeyError):

@@ -140,8 +140,10 @@ def program_all(
                 fleet.start(waiting.popleft())
             fleet.step()
     except KeyboardInterrupt:
-        for name in fleet.stop() + list(waiting):
-            fleet.outcomes[name] = Outcome(name, "interrupted", 0.0, "interrupted; flash it again")
+        begun = {outcome.port: outcome for outcome in fleet.stop()}
+        for name in [*begun, *waiting]:
+            before = begun.get(name, Outcome(name, "failed", 0.0))
+            fleet.outcomes[name] = replace(before, result="interrupted", error="interrupted; flash it again")
     finally:
         fleet.stop()
     return [fleet.outcomes[name] for name in names]
@@ -166,7 +168,9 @@ class _Fleet:
         try:
             descriptor = lock.enter_context(port_lock(name, "tilenca flash"))
         except PortBusyError as busy:
-            self._done(Outcome(name, "failed", 0.0, f"busy: {busy} works on it; end that, then flash again"))
+            self._done(
+                Outcome(name, "failed", 0.0, f"busy: {busy} has it open; close that, then flash again")
+            )
             return
         if problem := _obstacle(name):
             lock.close()
@@ -177,7 +181,13 @@ class _Fleet:
             run = Run(self._tool, self._image, name, descriptor)
             self.runs[name] = run, lock
         self._selector.register(run.stream, selectors.EVENT_READ, run)
-        self._report(name, run.output.progress)
+        self._tell(run)
+
+    def _tell(self, run: Run) -> None:
+        progress = run.output.progress
+        if progress.phase == "connecting" and self._attempts[run.port] > 1:
+            progress = replace(progress, phase="trying again")
+        self._report(run.port, progress)
 
     def step(self) -> None:
         """Waits for news of any board, or for the next one to run out of time."""
@@ -193,7 +203,7 @@ class _Fleet:
 
     def _advance(self, run: Run) -> None:
         if run.read():
-            self._report(run.port, run.output.progress)
+            self._tell(run)
             return
         self._selector.unregister(run.stream)
         outcome = run.finish()
@@ -211,12 +221,15 @@ class _Fleet:
         self.outcomes[outcome.port] = outcome
         self._report(outcome.port, outcome)
 
-    def stop(self) -> list[str]:
-        """Ends all that still run; returns their ports."""
-        stopped = list(self.runs)
+    def stop(self) -> list[Outcome]:
+        """Ends all that still run; returns what had become of them."""
+        stopped = []
         for run, lock in self.runs.values():
             run.kill("interrupted")
-            run.finish()
+            outcome = run.finish()
+            if before := self._before.get(run.port):
+                outcome = _both(before, outcome)
+            stopped.append(replace(outcome, attempts=self._attempts[run.port]))
             lock.close()
         self.runs.clear()
         return stopped

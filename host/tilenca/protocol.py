@@ -356,13 +356,13 @@ def set_command(name: str, value: int | str) -> bytes:
     """
     if name == "preset":
         if value not in PRESETS:
-            raise ValueError(f"preset {value}: there are {' and '.join(PRESETS)}")
+            raise ValueError(f"no preset '{value}': there are {' and '.join(PRESETS)}")
     elif name not in SETTING_RANGES:
         raise ValueError(f"no setting '{name}': there are {', '.join(SETTING_RANGES)} and preset")
     else:
         low, high = SETTING_RANGES[name]
         if not isinstance(value, int) or not low <= value <= high:
-            raise ValueError(f"{name} {value}: must be {low}..{high}")
+            raise ValueError(f"{name} '{value}': must be a whole number in {low}..{high}")
     return framed(f"SET,{name},{value}")
 
 

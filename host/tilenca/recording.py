@@ -3,20 +3,24 @@
 A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port", "open", "reason"}`.
 """
 
+import fnmatch
 import json
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
-from tilenca.errors import TilencaError, UsageError
+from tilenca.errors import NoDeviceError, TilencaError, UsageError
 from tilenca.protocol import parse_sentence
 from tilenca.streams import warn
 from tilenca.telemetry import Event, Heard, PortNews
 
 # Every byte is a character of Latin-1 and back.
 ENCODING = "latin-1"
+
+# No line is so long.
+LONGEST = 1 << 20
 
 # The last moment that all clocks and calendars can name.
 LAST_S = 253_402_300_799.0
@@ -44,10 +48,13 @@ class Recorder:
         """Opens the file, to write it anew (`w`) or to append (`a`).
 
         Raises:
-            UsageError: it cannot be opened, or its last line was cut off: what is appended could not be read.
+            UsageError: it cannot be opened, or is no recording or one whose last line was cut off: what is
+                appended could not be read.
         """
         self._path = path
         try:
+            if mode == "a" and path.is_file() and not _begins_well(path):
+                raise UsageError(f"{path}: not a recording; give --record another file")
             if mode == "a" and path.is_file() and not _ends_well(path):
                 raise UsageError(f"{path}: its last line is cut off; give --record another file")
             self._file = path.open(mode, encoding="ascii")
@@ -74,6 +81,15 @@ class Recorder:
     def __exit__(self, *about: object) -> None:
         with suppress(OSError):  # what could not be written has been told
             self._file.close()
+
+
+def _begins_well(path: Path) -> bool:
+    with path.open("rb") as file:
+        first = file.readline(LONGEST)
+    try:
+        return not first or parse_event(first.decode("ascii")) is not None
+    except ValueError:
+        return not first.endswith(b"\n") and first.startswith(b'{"time": ')  # cut off in its first line
 
 
 def _ends_well(path: Path) -> bool:
@@ -104,6 +120,51 @@ def parse_event(line: str) -> Event:
         }:
             return PortNews(float(time_s), port, is_open, reason)
     raise ValueError("neither a line nor news of a port")
+
+
+class Choice:
+    """The events of a recording's ports that match patterns, and what it held."""
+
+    def __init__(self, path: Path, patterns: Sequence[str]) -> None:
+        self._path, self._patterns = path, patterns
+        self._ports: dict[str, bool] = {}
+        self._length_s = 0.0
+        self._complete = False
+
+    def __iter__(self) -> Iterator[Event]:
+        first_s: float | None = None
+        for event in read_recording(self._path):
+            if event.port not in self._ports:
+                self._ports[event.port] = self._matches(event.port)
+            if self._ports[event.port]:
+                first_s = event.time_s if first_s is None else first_s
+                self._length_s = max(self._length_s, event.time_s - first_s)
+                yield event
+        self._complete = True
+
+    def _matches(self, port: str) -> bool:
+        """By a port's whole name or the end of it: `tiles.toml` has names from `/` on."""
+        return not self._patterns or any(
+            fnmatch.fnmatchcase(port, pattern) or fnmatch.fnmatchcase(port, f"*/{pattern}")
+            for pattern in self._patterns
+        )
+
+    def complain(self, start_s: float) -> None:
+        """Says why nothing was shown of it, if so.
+
+        Raises:
+            NoDeviceError: no port matches.
+        """
+        if not self._complete:
+            return  # a person has ended it
+        if not self._ports:
+            warn(f"{self._path}: nothing is recorded in it")
+        elif not any(self._ports.values()):
+            raise NoDeviceError(
+                f"{self._path}: no port matches {' '.join(self._patterns)}; it has {', '.join(self._ports)}"
+            )
+        elif start_s > self._length_s:
+            warn(f"{self._path}: --from {start_s:g} is past its end, at {self._length_s:.1f} s")
 
 
 def read_recording(path: Path) -> Iterator[Event]:

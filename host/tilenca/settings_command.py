@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from tilenca.asking import ask
-from tilenca.boards import add_fleet_arguments, find_fleet, tell_contradiction, tile_numbers
+from tilenca.boards import Found, add_fleet_arguments, find_fleet, tell_contradiction, tile_numbers
 from tilenca.commanding import command_all
 from tilenca.errors import NoDeviceError, UsageError
 from tilenca.portreader import PortReader
 from tilenca.protocol import PRESETS, SETTING_RANGES, HelloSentence, set_command
+from tilenca.streams import warn
 from tilenca.tables import table
+from tilenca.wording import whole_number
 
 USER = "tilenca set"
 HEADER = ("PORT", "TILE", "RESULT", "ID", "PERIOD", "UPDATES", "BRIGHTNESS", "WHY")
@@ -45,7 +47,8 @@ class Row:
 def run(args: argparse.Namespace) -> int:
     """Sets it everywhere at once; see `tilenca set --help`."""
     try:
-        value = args.value if args.name == "preset" or not args.value.isdecimal() else int(args.value)
+        number = None if args.name == "preset" else whole_number(args.value)
+        value = args.value if number is None else number
         order = set_command(args.name, value)
     except ValueError as error:
         raise UsageError(f"{error}; see tilenca set --help") from error
@@ -59,11 +62,14 @@ def run(args: argparse.Namespace) -> int:
         for name, tile in listed.items()
         if wanted is None or tile is None or tile in wanted
     }
+    asked = rows
     with PortReader(list(rows), user=USER) as reader:
         rows = _known(reader, rows, wanted)
-        if args.name == "id" and len(rows) > 1 and value != 0:
-            raise UsageError(f"{len(rows)} tiles would have the same id; choose one with --tile or --port")
+        if args.name == "id" and value != 0:
+            _check_id(value, rows, _others(found, asked, rows))
         _set(reader, rows, args.name, value, order)
+    if args.name in ("period", "preset"):
+        _compare_periods([asked.get(name) or Row(name, None) for name in listed])
     for port, row in rows.items():
         if listed[port] is None and row.hello:
             row.tile = row.hello.tile or None
@@ -76,6 +82,37 @@ def run(args: argparse.Namespace) -> int:
     everything = [*rows.values(), *absent]
     _print(everything, args.json)
     return 0 if all(row.result == "set" for row in everything) else 1
+
+
+def _others(found: Found, asked: dict[str, Row], chosen: dict[str, Row]) -> set[int | None]:
+    """The ids of all tiles but the chosen ones, as far as they are known: by the file, and as tiles say."""
+    others = [board for board in found.boards if board.port.name not in chosen]
+    said = [row.hello.tile for board in others if (row := asked.get(board.port.name)) and row.hello]
+    return {*said, *(board.tile for board in others), *(place.tile for place in found.missing)}
+
+
+def _check_id(value: int | str, rows: dict[str, Row], others: set[int | None]) -> None:
+    """Refuses to give two tiles the same id.
+
+    Raises:
+        UsageError: it would.
+    """
+    if len(rows) > 1:
+        raise UsageError(f"{len(rows)} tiles would have the same id; choose one with --tile or --port")
+    if value in others:
+        raise UsageError(f"there is a tile {value} already; give that one another id first, or this one")
+
+
+def _compare_periods(rows: list[Row]) -> None:
+    """Says if tiles of the fleet have different periods, or may have."""
+    periods = {row.hello.period_ms if row.hello else None for row in rows}
+    if len(periods) > 1:
+        known = ", ".join(str(period) for period in sorted(filter(None, periods)))
+        rest = ", others not known" if None in periods else ""
+        warn(
+            f"tiles may have different periods now ({known} ms{rest}): such neighbours agree more slowly; "
+            "without --tile and --port it is set in all"
+        )
 
 
 def _known(reader: PortReader, rows: dict[str, Row], wanted: set[int] | None) -> dict[str, Row]:

@@ -98,6 +98,24 @@ def _place(about: Any, others: list[Place]) -> Place:
     return place
 
 
+def tile_count(count: int) -> str:
+    """So many tiles, in words."""
+    return f"{count} tile{'s' * (count != 1)}"
+
+
+def tile_list(tiles: Iterable[int]) -> str:
+    """Ids as a list like `tiles 3, 7, 9-12`."""
+    ids = sorted(tiles)
+    runs: list[list[int]] = []
+    for tile in ids:
+        if runs and tile == runs[-1][-1] + 1:
+            runs[-1].append(tile)
+        else:
+            runs.append([tile])
+    parts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
+    return f"tile{'s' * (len(ids) != 1)} {', '.join(parts)}"
+
+
 def format_tiles(places: Iterable[Place]) -> str:
     """The file's text; tiles in reading order."""
     tables = [

@@ -1,5 +1,7 @@
 """Sentences in words that a person reads. Standard library only: PlatformIO's monitor uses it too."""
 
+import re
+
 from tilenca.protocol import (
     AckSentence,
     ErrorSentence,
@@ -14,8 +16,9 @@ from tilenca.protocol import (
 from tilenca.telemetry import type_of
 
 SHOWN_BYTES = 60
+_WHOLE = re.compile(r"-?[0-9]{1,9}")
 # Bits of MCUSR.
-RESET_CAUSES = ("power-on", "reset", "brown-out", "watchdog", "JTAG")
+RESET_CAUSES = ("power-on", "its reset pin", "brown-out", "watchdog", "JTAG")
 NAK_REASONS = {
     "CHECKSUM": "damaged",
     "LONG": "too long",
@@ -23,6 +26,11 @@ NAK_REASONS = {
     "VALUE": "wrong field",
     "EEPROM": "the EEPROM did not keep it",
 }
+
+
+def whole_number(text: str) -> int | None:
+    """The number that a person typed, in the digits of this program's own texts; None if it is none."""
+    return int(text) if _WHOLE.fullmatch(text) else None
 
 
 def printable(raw: bytes) -> str:

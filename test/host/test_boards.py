@@ -9,9 +9,10 @@ import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
 from tilenca import ports
-from tilenca.boards import find_boards, find_fleet, tell_contradiction, tile_numbers
+from tilenca.boards import board_name, find_boards, find_fleet, tell_contradiction, tell_models, tile_numbers
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
+from tilenca.ports import Port
 from tilenca.protocol import HelloSentence
 from tilenca.tilesfile import Place, write_tiles
 
@@ -85,8 +86,33 @@ def test_a_serial_number_that_two_boards_have_by_now_names_none(lab: list[ListPo
 
 def test_no_listed_tile_at_all_is_no_device(lab: list[ListPortInfo]) -> None:
     write_tiles(Path("tiles.toml"), [Place(7, "serial:other", 0, 0)])
-    with pytest.raises(NoDeviceError, match=r"none of the 1 tiles that tiles.toml lists"):
+    with pytest.raises(NoDeviceError, match=r"of the 1 tile that tiles.toml lists, none is connected"):
         find_fleet([], None)
+
+
+@pytest.mark.parametrize("there", [[], LAB])
+def test_devices_names_the_listed_tiles_even_when_all_are_gone(
+    there: list[ListPortInfo], lab: list[ListPortInfo], capsys: pytest.CaptureFixture[str]
+) -> None:
+    lab[:] = there
+    write_tiles(Path("tiles.toml"), [Place(7, "serial:other", 0, 0)])
+    assert main(["devices", "--json"]) == (0 if there else 3)
+    captured = capsys.readouterr()
+    assert [tile["tile"] for tile in json.loads(captured.out)["missing"]] == [7]
+    assert "tile 7 (serial:other): not connected\n" in captured.err
+    assert there or "of the 1 tile that tiles.toml lists, none is connected" in captured.err
+
+
+def test_a_file_without_a_tile_is_named(lab: list[ListPortInfo], capsys: pytest.CaptureFixture[str]) -> None:
+    write_tiles(Path("tiles.toml"), [])
+    assert main(["devices"]) == 2
+    assert "tiles.toml: lists no tile; write it with" in capsys.readouterr().err
+
+
+def test_a_device_has_one_name_from_whatever_folder_it_is_named(tmp_path: Path) -> None:
+    (tmp_path / "deep").mkdir()
+    name = f"{tmp_path}/deep/../tile-01"
+    assert board_name(Port(name), []) == board_name(Port(f"{tmp_path}/tile-01"), [])
 
 
 @pytest.fixture
@@ -107,7 +133,8 @@ def test_a_device_that_is_not_on_usb_is_found_by_its_name(
     assert main(["devices", "--json", "--tiles", "lab.toml"]) == 0
     captured = capsys.readouterr()
     document = json.loads(captured.out)
-    assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [(str(link), 3, 4, 2)]
+    assert [(d["port"], d["tile"], d["row"], d["col"]) for d in document["devices"]] == [("tile-01", 3, 4, 2)]
+    assert [(d["board"], d["about"]) for d in document["devices"]] == [(f"port:{link}", "pseudo-terminal")]
     assert document["missing"] == [{"tile": 4, "row": 4, "col": 3, "board": "serial:none"}]
     assert captured.err == "tile 4 (serial:none): not connected\n"
 
@@ -142,8 +169,17 @@ def test_a_tile_that_calls_itself_otherwise_is_told(capsys: pytest.CaptureFixtur
     assert "tile 7 by the file of tiles, but it calls itself 9" in capsys.readouterr().err
 
 
+def test_tiles_that_run_another_model_than_most_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    ours, other = (HelloSentence(2, 3, model, 21, 10, 100, 0, 0, 0, 255) for model in (0xABCD, 0x1234))
+    tell_models({})
+    tell_models({"a": ours, "b": ours})
+    assert capsys.readouterr().err == ""
+    tell_models({"a": other, "b": ours, "c": ours})
+    assert capsys.readouterr().err.startswith("a: tile 3 runs model 1234, most run ABCD; ")
+
+
 def test_lists_of_tiles() -> None:
     assert tile_numbers("3,7, 9-11") == {3, 7, 9, 10, 11}
-    for wrong in ("", "x", "3-", "-3", "1,,2", "1-999"):
+    for wrong in ("", "x", "3-", "-3", "1,,2", "1-999", "9-3", "256", "\N{ARABIC-INDIC DIGIT THREE}"):
         with pytest.raises(UsageError, match="not a list of tiles"):
             tile_numbers(wrong)

@@ -112,12 +112,31 @@ def test_a_plain_file_is_no_port(tmp_path: Path) -> None:
         find_ports([str(tmp_path / "file")])
 
 
+@pytest.mark.parametrize("name", ["/dev/null", "/dev/zero"])
+def test_a_device_with_nothing_behind_it_is_no_port(name: str) -> None:
+    with pytest.raises(NoDeviceError):
+        find_ports([name])
+
+
 def test_a_lock_names_its_holder_and_ends_with_its_block(pty: str) -> None:
     holder = rf"^tilenca flash \(pid {os.getpid()}\)$"
     with port_lock(pty, "tilenca flash"), pytest.raises(PortBusyError, match=holder), port_lock(pty, "other"):
         pass
     with port_lock(pty, "other"):
         pass
+
+
+def test_where_no_port_may_be_opened_nothing_is_learnt_and_flashing_is_not_advised(
+    pty: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "tiles.toml"
+    file.write_text("of somebody's own")
+    with port_lock(pty, "tilenca flash"):
+        assert main(["devices", "--learn", "--tiles", str(file), "--port", pty]) == 1
+    first, last = capsys.readouterr().err.splitlines()
+    assert first == f"{pty}: busy: tilenca flash (pid {os.getpid()}) has it open; left out"
+    assert last.endswith(": no tile answers")
+    assert file.read_text() == "of somebody's own"
 
 
 def test_a_child_keeps_the_lock_it_was_given_until_it_ends(pty: str) -> None:

@@ -107,6 +107,8 @@ def test_what_may_pass_is_tried_once_more_and_what_cannot_is_not(firmware: Path)
         ("flashed", 2)
     ] * 2
     assert (tiles[wrong.port]["result"], tiles[wrong.port]["attempts"]) == ("failed", 1)
+    again = {line.split(": ")[0] for line in chatter.splitlines() if line.endswith(": trying again")}
+    assert again == {hung.port, disturbed.port}
 
 
 def test_the_next_call_with_failed_flashes_those_and_no_other(firmware: Path) -> None:
@@ -218,7 +220,7 @@ def test_a_board_without_permission_says_what_to_do(firmware: Path) -> None:
         done = subprocess.run(arguments, capture_output=True, text=True, timeout=LIMIT_S, check=False)
     assert done.returncode == 1, done.stderr
     [tile] = json.loads(done.stdout)["tiles"]
-    assert tile["error"].startswith("permission denied; join its group with `sudo usermod -aG ")
+    assert tile["error"] == "permission denied; these emulated tiles are another user's: serve your own"
 
 
 def test_a_port_in_use_says_by_whom(firmware: Path) -> None:
@@ -235,8 +237,11 @@ def test_a_port_in_use_says_by_whom(firmware: Path) -> None:
         assert not ours.heard.is_set()
         assert not theirs.heard.is_set()
     assert status == 1
-    assert tiles[ours.port]["error"].startswith(f"busy: tilenca monitor (pid {os.getpid()})")
-    assert f"(pid {other.pid}) has it open" in tiles[theirs.port]["error"]
+    assert tiles[ours.port]["error"].startswith("busy: tilenca monitor ")
+    for board, holder in ((ours, os.getpid()), (theirs, other.pid)):
+        assert tiles[board.port]["error"].endswith(
+            f"(pid {holder}) has it open; close that, then flash again"
+        )
 
 
 def test_a_bad_image_is_refused_before_any_board_is_touched(firmware: Path) -> None:
@@ -277,8 +282,10 @@ def test_an_interrupt_exits_with_130_and_leaves_nothing_running(
         assert avrdudes_on(stuck.port) == []
         assert not waiting.heard.is_set()
     assert flashing.returncode == 130, chatter
-    results = {tile["port"]: tile["result"] for tile in json.loads(output)["tiles"]}
-    assert results == {stuck.port: "interrupted", waiting.port: "interrupted"}
+    tiles = {tile["port"]: tile for tile in json.loads(output)["tiles"]}
+    assert {tile["result"] for tile in tiles.values()} == {"interrupted"}
+    assert (tiles[stuck.port]["attempts"], tiles[waiting.port]["attempts"]) == (1, 0)
+    assert tiles[stuck.port]["seconds"] > 0.0 == tiles[waiting.port]["seconds"]
     assert "Traceback" not in chatter
 
 

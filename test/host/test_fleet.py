@@ -127,7 +127,10 @@ def test_a_setting_reaches_the_tiles_that_are_meant_and_is_read_back(lab: Lab) -
     everybody = json.loads(tilenca(lab, "set", "period", "120", "--json").stdout)["tiles"]
     assert {tile["settings"]["period"] for tile in everybody} == {120}
     assert [t["tile"] for t in everybody if t["settings"]["brightness"] == 77] == [3, 5, 6]
-    tilenca(lab, "set", "preset", "default")
+    assert "different periods" not in tilenca(lab, "set", "preset", "default").stderr
+    some = tilenca(lab, "set", "period", "40", "--tile", "3")
+    assert "tiles may have different periods now (40 ms, others not known)" in some.stderr
+    tilenca(lab, "set", "preset", "default", "--tile", "3")
 
 
 @pytest.mark.parametrize(
@@ -137,8 +140,10 @@ def test_a_setting_reaches_the_tiles_that_are_meant_and_is_read_back(lab: Lab) -
         ["period", "x"],
         ["colour", "3"],
         ["preset", "fast"],
+        ["brightness", "\N{ARABIC-INDIC DIGIT THREE}"],
         ["id", "3"],
         ["id", "3", "--tile", "x"],
+        ["id", "3", "--tile", "1"],
     ],
 )
 def test_a_setting_that_cannot_be_is_refused_before_any_tile_has_it(lab: Lab, arguments: list[str]) -> None:
@@ -162,9 +167,16 @@ def test_a_person_says_where_blinking_tiles_lie(lab: Lab, tmp_path: Path) -> Non
     ports = ["--port", lab.port(1), "--port", lab.port(2)]
     file = tmp_path / "two.toml"
     arguments = ["devices", "--learn", "--blink", "--tiles", str(file), *ports]
-    done = tilenca(lab, *arguments, typed="0 0\n0 0\nx\n4 -1\n")
-    assert done.stderr.count("blinks") == 4
+    done = tilenca(lab, *arguments, typed="0 0\n0 0\nx\n4 99999\n4 -1\n")
+    assert done.stderr.count("blinks") == 5
     assert [(place.tile, place.row, place.col) for place in read_tiles(file)] == [(1, 0, 0), (2, 4, -1)]
+    before = file.read_bytes()
+    nothing = tilenca(lab, *arguments, status=1)
+    assert f"no tile was given a place: {file} is left as it was" in nothing.stderr
+    assert file.read_bytes() == before
+    one = tilenca(lab, "devices", "--learn", "--tiles", str(file), *ports[:2])
+    assert "kept as they were, since they were not heard now: tile 2" in one.stderr
+    assert file.read_bytes() == before
 
 
 def test_tiles_without_an_id_of_their_own_get_one_if_asked(lab: Lab, tmp_path: Path) -> None:
@@ -173,7 +185,7 @@ def test_tiles_without_an_id_of_their_own_get_one_if_asked(lab: Lab, tmp_path: P
     file = tmp_path / "two.toml"
     arguments = ["devices", "--learn", "--tiles", str(file), *ports]
     done = tilenca(lab, *arguments, status=1)
-    assert f"no id of their own have the tiles behind {lab.port(2)}; add --assign" in done.stderr
+    assert f"without an id of their own: {lab.port(2)} (1, as another); add --assign" in done.stderr
     assert not file.exists()
     tilenca(lab, *arguments, "--assign")
     assert [place.tile for place in read_tiles(file)] == [1, 2]

@@ -25,11 +25,11 @@ MORE: dict[str, list[str]] = {
     "tilenca flash": [],
     "tilenca flash --failed": [],
     "tilenca flash --only 3,7,9-12 --force": [],
-    "tilenca set brightness 80": [],
-    "tilenca set period 500 --tile 3,7,9-12": [],
+    "tilenca set brightness 80 --tile 3,7,9-12": [],
+    "tilenca set period 500": [],
     "tilenca set preset default": [],
     "python host/monitor.py": ["--seconds", "1"],
-    "tilenca monitor --record lab.jsonl": ["--seconds", "1"],
+    "tilenca monitor --record lab.jsonl": ["--seconds", "12"],
     "tilenca monitor --replay lab.jsonl --from 10 --speed 4": [],
 }
 # Tried in test_fleet.py and test_readme.py.

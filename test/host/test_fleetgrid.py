@@ -80,6 +80,41 @@ def test_a_link_that_should_be_there_is_marked_dead() -> None:
     assert "lost its neighbour on W" in lab.news
 
 
+def test_a_tile_with_another_model_is_marked_and_told_once_until_it_has_ours() -> None:
+    lab = three_in_an_l()
+    lab.say("a", TileSentence(1, 1000, 10, "4", "--S-", STATE))
+    for second in range(1, 15):
+        foreign = min(10 * second, 50)
+        lab.say("a", LinkSentence(1, 1000 * second, "E", 0, 0, 0, 0, foreign, None, 0, None, None))
+        if second == 4:
+            assert Grid().cells(lab.fleet, 1.0)[0, 0].marks["E"] is Mark.FOREIGN
+    assert [text for text in lab.news if "model" in text] == [
+        "a tile with another model is on E: flash both (tilenca flash)"
+    ]
+    lab.say("a", LinkSentence(1, 16_000, "E", 0, 0, 0, 0, 50, None, 0, None, None))
+    assert lab.news[-1] == "no other model is on E any more"
+
+
+def test_without_the_file_tiles_stay_where_they_were_while_a_link_fails() -> None:
+    lab, grid = three_in_an_l(), Grid()
+    grid.cells(lab.fleet, 1.0)
+    lab.say("a", TileSentence(1, 200, 9, "4", "--S-", STATE))
+    lab.say("b", TileSentence(2, 200, 9, "4", "----", STATE))
+    cells = grid.cells(lab.fleet, 1.5)
+    assert {place: cell.tile for place, cell in cells.items()} == {(0, 0): 1, (0, 1): 2, (1, 0): 3}
+    assert (cells[0, 0].marks["E"], cells[0, 1].marks["W"]) == (Mark.DEAD, Mark.DEAD)
+
+
+def test_a_tile_that_was_moved_lies_where_it_is_now() -> None:
+    lab, grid = three_in_an_l(), Grid()
+    grid.cells(lab.fleet, 1.0)
+    lab.say("a", TileSentence(1, 200, 9, "4", "--S-", STATE))
+    lab.say("b", TileSentence(2, 200, 9, "4", "---W", STATE), link(2, "W", 3))
+    lab.say("c", TileSentence(3, 200, 9, "9", "NE--", STATE), link(3, "E", 2))
+    cells = grid.cells(lab.fleet, 1.5)
+    assert {place: cell.tile for place, cell in cells.items()} == {(0, 0): 1, (1, 0): 3, (1, 1): 2}
+
+
 def test_silent_and_absent_tiles_are_marked_and_one_that_came_back_elsewhere_is_drawn_once() -> None:
     lab = three_in_an_l()
     lab.take(PortNews(2.0, "c", is_open=False, reason="went away"))
@@ -153,6 +188,17 @@ def test_whatever_is_heard_the_picture_fits_the_terminal(
     lines = view.lines(width, height)
     assert len(lines) <= height
     assert all(line.cell_len <= width for line in lines)
+
+
+def test_on_a_narrow_terminal_the_log_says_what_happens_and_not_where_ports_are() -> None:
+    lab, port = Lab(), "/a/folder/far/away/from/all/others/tiles/tile-03"
+    view = LiveView(lab.fleet, Grid(), Console(width=50, height=24), table=False)
+    lab.open(port)
+    for label in "49":
+        said = Heard(1.0, port, b"", TileSentence(3, 100, 1, label, "----", STATE))
+        lab.take(said)
+        view.show(1.0, [said])
+    assert view.lines(50, 24)[-1].plain.endswith(" tile   3 tile-03 shows 9, before 4")
 
 
 def test_boxes_and_lines_have_one_size_whatever_the_numbers() -> None:

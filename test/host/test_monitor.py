@@ -190,6 +190,54 @@ def test_what_is_recorded_is_replayed_through_the_same_view(
     assert (json.loads(only)["tile"], json.loads(only)["fields"]["label"]) == (2, "7")
 
 
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """Ten seconds of two tiles, a sentence a second; after five a 7 becomes a 1."""
+    record = tmp_path / "record.jsonl"
+    events: list[Event] = []
+    for port in ("/lab/tiles/tile-01", "tile-02"):
+        events.append(PortNews(1000.0, port, is_open=True))
+    for second in range(11):
+        for tile, port in ((1, "/lab/tiles/tile-01"), (2, "tile-02")):
+            said = TileSentence(tile, 1000 * second, second, "7" if second < 5 else "1", "----", STATE)
+            events.append(Heard(1000.0 + second, port, format_sentence(said).strip(), said))
+    record.write_text("".join(map(format_event, events)))
+    return record
+
+
+def replayed(record: Path, *options: str) -> list[str]:
+    return ["monitor", "--replay", str(record), "--speed", "0", *options]
+
+
+@pytest.mark.parametrize("manner", [[], ["--json"]])
+def test_lines_of_a_replay_begin_where_it_does(
+    manner: list[str], recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(replayed(recorded, "--from", "8", *manner)) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 6
+    assert main(replayed(recorded, "--from", "99", *manner)) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert f"{recorded}: --from 99 is past its end, at 10.0 s" in captured.err
+
+
+def test_the_log_is_what_is_new(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(replayed(recorded, "--log", "--from", "3")) == 0
+    assert [line.split(" ", 1)[1] for line in capsys.readouterr().out.splitlines()] == [
+        "tile   1 /lab/tiles/tile-01 shows 1, before 7",
+        "tile   2 tile-02 shows 1, before 7",
+    ]
+
+
+def test_ports_of_a_replay_go_by_the_end_of_their_names_and_none_is_told(
+    recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(replayed(recorded, "--port", "tiles/tile-0*")) == 0
+    assert {line.split()[1] for line in capsys.readouterr().out.splitlines()} == {"/lab/tiles/tile-01"}
+    assert main(replayed(recorded, "--port", "ile-01")) == 3
+    assert "no port matches ile-01; it has /lab/tiles/tile-01, tile-02" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("options", [["--table"], []])
 def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
     options: list[str], tiles: list[Tile], tmp_path: Path
@@ -343,6 +391,16 @@ def test_a_record_that_cannot_be_written_is_refused(
 ) -> None:
     assert main(["monitor", "--record", "/no/such/place", *ports(tiles[0])]) == 2
     assert "--record" in capsys.readouterr().err
+
+
+def test_what_is_no_recording_is_not_appended_to(
+    tiles: list[Tile], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    readme = tmp_path / "README.md"
+    readme.write_text("# Tiles\n")
+    assert main(["monitor", "--record", str(readme), *ports(tiles[0])]) == 2
+    assert "not a recording; give --record another file" in capsys.readouterr().err
+    assert readme.read_text() == "# Tiles\n"
 
 
 def test_a_record_without_room_ends_it_with_one_line(
