@@ -23,19 +23,19 @@ class Recipe:
             0: the last weights are kept.
         bounded: the tile's own arithmetic in the loop: clamped states and activations, byte messages.
         pool: tissues kept from one iteration to the next; 0: every sample starts from the seed state.
-        reset: share of a batch taken back to the seed state.
+        reset: share of what is not of the quiet pool that is taken back to the seed state.
         late: share of the samples taken back to the seed in which tiles are switched on one after the other;
             what the first ones make of it is not held against them, but they must get over it later.
-        switch: share of a batch rebuilt into another drawing while running.
-        scramble: share of a batch whose tiles get states of any others: from anywhere they must find back.
-        away: share of a batch in which a tile or two are off for once; what the others make of it is not held
+        switch: share of it that is rebuilt into another drawing while running.
+        scramble: share of it whose tiles get states of any others: from anywhere they must find back.
+        away: share of it in which a tile or two are off for once; what the others make of it is not held
             against them.
         quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift.
         quiet_batch: how many of them are in each batch.
         quiet_rounds: least and most rounds of an undisturbed life.
         ahead_every: iterations after which quiet tissues live ahead by the weights that are kept; 0: never.
         ahead: least and most steps that they then live.
-        trials: tissues that then begin, or are rebuilt, or get a tile back; the pool gets who does not agree.
+        trials: of the files' drawings that then try each way to begin; the pool gets who does not agree.
         quiet_penalty: weight of the squared change of settled states over one iteration.
         fire_rate: least and most share of tiles that update in a round, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
