@@ -106,17 +106,17 @@ void obey(uint32_t now_ms) {
     static Writing writing = Writing::Nothing;
     uint8_t byte;
     if (writing != Writing::Nothing && !board::eeprom_writing() && room_to_speak()) {
-        if (writing == Writing::New) {
+        const bool is_new = writing == Writing::New;
+        writing = Writing::Nothing;
+        if (is_new) {
             uint8_t first[kSettingsSize], second[kSettingsSize];
             board::eeprom_read(board::Kept::First, first, sizeof first);
             board::eeprom_read(board::Kept::Second, second, sizeof second);
-            writing = host.stored(first, second, &tile, &sentence) ? Writing::Nothing : Writing::Old;
-            say_sentence();
-            if (writing == Writing::Old) {
+            if (!host.stored(first, second, &tile, &sentence)) {
                 board::eeprom_write(host.block(), kSettingsSize);
+                writing = Writing::Old;
             }
-        } else {
-            writing = Writing::Nothing;
+            say_sentence();
         }
     }
     while (writing == Writing::Nothing && room_to_speak() && board::usart_read(board::kHostUsart, &byte)) {

@@ -21,7 +21,7 @@ uint32_t firmware_id();
 void watchdog_begin();
 void watchdog_feed();
 
-// Looks at a few bytes of the stack's room; call it in every turn of the main loop. True when it has seen all.
+// Looks at a few bytes of the stack's room, in every turn of the main loop. True when it has seen all.
 bool stack_watch();
 
 // Bytes of the stack's room that were never used, as of the last time that stack_watch() had seen all.
