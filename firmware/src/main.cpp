@@ -34,7 +34,15 @@ Settings read_settings() {
     board::eeprom_read(board::Kept::First, first, sizeof first);
     board::eeprom_read(board::Kept::Second, second, sizeof second);
     Settings settings = kDefaults;
-    if (!parse_settings(first, &settings) && !parse_settings(second, &settings) && !is_blank(first)) {
+    if (parse_settings(first, &settings)) {
+        return settings;
+    }
+    if (parse_settings(second, &settings)) {
+        // The next change writes the second ones first: the first must be whole by then.
+        board::eeprom_write(second, sizeof second);
+        while (board::eeprom_writing()) {
+        }
+    } else if (!is_blank(first)) {
         telemetry.failed(Error::Settings);
     }
     return settings;
@@ -94,16 +102,24 @@ void write_sides() {
 
 // What the host says waits in its ring while there is no room for the answer, or EEPROM is being written.
 void obey(uint32_t now_ms) {
-    static bool storing = false;
+    enum class Writing : uint8_t { Nothing, New, Old };
+    static Writing writing = Writing::Nothing;
     uint8_t byte;
-    if (storing && !board::eeprom_writing() && room_to_speak()) {
-        storing = false;
-        uint8_t kept[kSettingsSize];
-        board::eeprom_read(board::Kept::First, kept, sizeof kept);
-        host.stored(kept, &tile, &sentence);
-        say_sentence();
+    if (writing != Writing::Nothing && !board::eeprom_writing() && room_to_speak()) {
+        const bool is_new = writing == Writing::New;
+        writing = Writing::Nothing;
+        if (is_new) {
+            uint8_t first[kSettingsSize], second[kSettingsSize];
+            board::eeprom_read(board::Kept::First, first, sizeof first);
+            board::eeprom_read(board::Kept::Second, second, sizeof second);
+            if (!host.stored(first, second, &tile, &sentence)) {
+                board::eeprom_write(host.block(), kSettingsSize);
+                writing = Writing::Old;
+            }
+            say_sentence();
+        }
     }
-    while (!storing && room_to_speak() && board::usart_read(board::kHostUsart, &byte)) {
+    while (writing == Writing::Nothing && room_to_speak() && board::usart_read(board::kHostUsart, &byte)) {
         switch (host.receive(byte, &tile, now_ms, &sentence)) {
         case Host::Result::Nothing:
             break;
@@ -112,7 +128,7 @@ void obey(uint32_t now_ms) {
             break;
         case Host::Result::Store:
             board::eeprom_write(host.block(), kSettingsSize);
-            storing = true;
+            writing = Writing::New;
             break;
         }
     }

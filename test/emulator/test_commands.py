@@ -261,6 +261,44 @@ def test_when_the_power_fails_while_settings_are_written_the_old_or_the_new_ones
     assert set(found) == {old, new}
 
 
+def test_power_may_fail_in_two_changes_one_after_the_other() -> None:
+    """The first tears the first block; the second, in the second block, must find that mended."""
+    old, new = settings_block(7, 100, 0), settings_block(7, 257, 0)
+    torn = new[:4] + b"\xff" + old[5:]
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, torn + new)
+        talk = Talk(array)
+        talk.listen(0.4)
+        assert array[0].read_eeprom(0, 24) == new * 2
+        array[0].write_serial(set_command("period", 1000))
+        for _ in range(200):
+            array.run(0.0005)
+            if array[0].read_eeprom(0, 24) != new * 2:
+                break
+        second_cut = array[0].read_eeprom(0, 24)
+    assert parse_settings(second_cut[12:]) is None, "cut off in the middle"
+    assert boots_with(second_cut) == (7, 257, 0, 255)
+
+
+@pytest.mark.parametrize("stuck", [8, 12 + 8])
+def test_a_worn_byte_in_either_block_is_told_and_the_old_settings_hold(talk: Talk, stuck: int) -> None:
+    """The byte keeps the old brightness, whatever is written."""
+    old = settings_block(7, 100, 0)
+    talk.tile.write_eeprom(0, old * 2)
+    talk.tile.write_serial(set_command("brightness", 40))
+    answers = []
+    for _ in range(400):
+        answers += [s for s in talk.listen(0.0005) if isinstance(s, AckSentence | NakSentence)]
+        if talk.tile.read_eeprom(stuck, 1) != old[8:9]:
+            talk.tile.write_eeprom(stuck, old[8:9])
+    assert answers == [NakSentence(7, "EEPROM", "SET")]
+    assert talk.tile.read_eeprom(0, 24) == old * 2
+    hello = talk.ask(ask_command())
+    assert isinstance(hello, HelloSentence)
+    assert hello.brightness == 255
+    assert boots_with(talk.tile.read_eeprom(0, 24)) == (7, 100, 0, 255)
+
+
 def test_a_reset_while_a_byte_is_written_does_not_hide_the_settings(talk: Talk) -> None:
     """The start-up code alone takes about as long as a byte; a shorter one must not read too early."""
     talk.tile.write_serial(set_command("id", 9))

@@ -27,8 +27,10 @@ class Host {
     // The settings that are to be kept, as they lie in EEPROM.
     const uint8_t (&block() const)[kSettingsSize] { return block_; }
 
-    // What EEPROM holds after the attempt. If that is the block, it is in force; `sentence` is the answer.
-    void stored(const uint8_t (&kept)[kSettingsSize], Tile* tile, Sentence* sentence);
+    // What EEPROM holds twice after the attempt; `sentence` is the answer. If both are the block, it is in
+    // force. Else false: block() is now that of the settings in force, to be written back.
+    bool stored(const uint8_t (&first)[kSettingsSize], const uint8_t (&second)[kSettingsSize], Tile* tile,
+                Sentence* sentence);
 
     // Whether the face is to blink, so that a person finds the tile.
     bool blinking(uint32_t now_ms);

@@ -21,11 +21,10 @@ uint32_t firmware_id();
 void watchdog_begin();
 void watchdog_feed();
 
-// Looks at a few bytes of the stack's room; call it in every turn of the main loop. True when it has seen
-// all.
+// Looks at a few bytes of the stack's room, in every turn of the main loop. True when it has seen all.
 bool stack_watch();
 
-// Bytes of it that were never used, as far as seen the last time that it has seen all.
+// Bytes of the stack's room that were never used, as of the last time that stack_watch() had seen all.
 uint16_t stack_unused();
 
 } // namespace board

@@ -92,17 +92,21 @@ bool Host::change(Settings* settings) const {
     return true;
 }
 
-void Host::stored(const uint8_t (&kept)[kSettingsSize], Tile* tile, Sentence* sentence) {
+bool Host::stored(const uint8_t (&first)[kSettingsSize], const uint8_t (&second)[kSettingsSize], Tile* tile,
+                  Sentence* sentence) {
     Settings settings;
-    if (memcmp(kept, block_, sizeof block_) != 0 || !parse_settings(kept, &settings)) {
+    if (memcmp(first, block_, sizeof block_) != 0 || memcmp(second, block_, sizeof block_) != 0 ||
+        !parse_settings(first, &settings)) {
+        write_settings(tile->settings(), block_);
         write_nak(*tile, "EEPROM", reader_.field(0), sentence);
-        return;
+        return false;
     }
     tile->apply(settings);
     begin_ack(*tile, sentence);
     sentence->text(reader_.field(1));
     sentence->text(reader_.field(2));
     sentence->end();
+    return true;
 }
 
 bool Host::blinking(uint32_t now_ms) {

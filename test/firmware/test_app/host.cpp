@@ -25,7 +25,8 @@ struct Fixture {
     Tile tile{model, {7, 100, 0, 255}, 0};
     const Boot boot{1, 0x1234ABCD};
     Host host{kDefaults, boot};
-    bool broken = false;
+    bool broken = false, held = false;
+    uint8_t broken_block = 0;
     uint32_t now_ms = 500;
     int writes = 0;
 
@@ -37,10 +38,11 @@ struct Fixture {
             Host::Result result = host.receive(byte, &tile, now_ms, &sentence);
             if (result == Host::Result::Store) {
                 ++writes;
-                uint8_t kept[kSettingsSize];
-                memcpy(kept, host.block(), sizeof kept);
-                kept[5] ^= broken;
-                host.stored(kept, &tile, &sentence);
+                uint8_t kept[2][kSettingsSize];
+                memcpy(kept[0], host.block(), kSettingsSize);
+                memcpy(kept[1], host.block(), kSettingsSize);
+                kept[broken_block][5] ^= broken;
+                held = host.stored(kept[0], kept[1], &tile, &sentence);
                 result = Host::Result::Answer;
             }
             text += result == Host::Result::Answer ? text_of(sentence) : "";
@@ -98,9 +100,18 @@ TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
 
 TEST_CASE_FIXTURE(Fixture,
                   "an EEPROM that does not keep what it is given is told, and the old settings stay") {
+    answer("SET,brightness,9");
+    CHECK(held);
     broken = true;
-    CHECK(answer("SET,period,20") == line_of("an EEPROM that does not keep"));
-    CHECK(tile.settings().period_ms == 100);
+    for (broken_block = 0; broken_block < 2; ++broken_block) {
+        CHECK(answer("SET,period,20") == line_of("an EEPROM that does not keep"));
+        CHECK_FALSE(held);
+        CHECK(tile.settings().period_ms == 100);
+        Settings back; // what is to be written back
+        CHECK(parse_settings(host.block(), &back));
+        CHECK(back.period_ms == 100);
+        CHECK(back.brightness == 9);
+    }
 }
 
 TEST_CASE_FIXTURE(Fixture, "what cannot be obeyed is answered too") {
