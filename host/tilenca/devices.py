@@ -95,8 +95,7 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
     mine = [next((b.name for b in present if is_board(b.port, p.board)), None) for p in old]
     # Boards by the names they have now.
     before = [replace(place, board=name or place.board) for place, name in zip(old, mine, strict=True)]
-    away = [place for place, name in zip(old, mine, strict=True) if name is None]
-    learnt = learn(present, args.blink, args.assign, away)
+    learnt = learn(present, args.blink, args.assign, before)
     if not learnt.places:
         state = "is left as it was" if file.exists() else "is not written"
         raise TilencaError(f"no tile was given a place: {file} {state}; learn again")

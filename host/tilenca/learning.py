@@ -36,14 +36,15 @@ class Learnt:
     left_out: int
 
 
-def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Place] = ()) -> Learnt:
+def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[Place] = ()) -> Learnt:
     """Asks the tiles who they are and who is on which side; where that is not enough, the person.
 
     Args:
         boards: the boards.
         blink: let each tile blink and ask the person for its place, whatever tiles say.
         assign: give tiles without an id of their own a free one.
-        away: tiles that are not here now: their ids are not free, nor are their places.
+        before: what is known so far, by the boards' names now: of boards that do not answer, neither ids nor
+            places are free.
 
     Raises:
         TilencaError: tiles have no id of their own, or places cannot be found out.
@@ -57,6 +58,8 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
                 warn(f"{name}: {answer.problem}; left out")
         said = {name: answer.hello for name, answer in answers.items() if answer.hello}
         tell_models(said)
+        here = {board.name for board in boards if board.port.name in said}
+        away = [place for place in before if place.board not in here]
         tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
             remedy = (
