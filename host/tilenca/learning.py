@@ -20,7 +20,7 @@ from tilenca.tilesfile import FAR, MAX_TILE_ID, Place
 from tilenca.wording import whole_number
 
 USER = "tilenca devices --learn"
-# Every tile tells of its four sides, one after another: within some of its periods.
+# Every tile tells of its four sides, one after another, one a period: five periods, and no less than this.
 LISTEN_S = 12.0
 # A tile knows a neighbour's new id from its next frame, which comes within a period; and tells it after that.
 SETTLE_S = 0.5
@@ -68,7 +68,13 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[P
             raise TilencaError(f"no tile answers{remedy}")
         renamed = any(tile != said[name].tile for name, tile in tiles.items())
         slowest_s = max(said[name].period_ms for name in tiles) / 1000
-        _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)
+        _listen(
+            reader,
+            fleet,
+            set(tiles),
+            SETTLE_S + 2 * slowest_s if renamed else 0.0,
+            max(LISTEN_S, 5 * slowest_s),
+        )
         cells = _asked(reader, tiles, away) if blink else _heard(tiles, fleet)
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
@@ -112,12 +118,12 @@ def _ids(reader: PortReader, said: dict[str, int], assign: bool, away: Sequence[
     return {name: tiles[name] for name in said if name in tiles}
 
 
-def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float) -> None:
+def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float, patience_s: float) -> None:
     """Hears every tile tell of all its sides, as it is in `settle_s`: what is said before is forgotten."""
     settled_s = time.monotonic() + settle_s
     for view in fleet.tiles.values():
         view.links.clear()
-    while (now_s := time.monotonic()) < settled_s + LISTEN_S:
+    while (now_s := time.monotonic()) < settled_s + patience_s:
         for event in reader.poll(TICK_S):
             fleet.take(event)
         if now_s < settled_s:
