@@ -5,7 +5,7 @@ import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tilenca.arguments import add_port_argument
@@ -68,12 +68,14 @@ def shared_serials(ports: Iterable[Port]) -> set[str]:
     return {number for number, times in counted.items() if times > 1}
 
 
-def is_board(port: Port, name: str) -> bool:
-    """Whether a board's name is one of this port's."""
+def is_board(port: Port, name: str, shared: Iterable[str] = ()) -> bool:
+    """Whether a board's name is one of this port's; a serial number that several boards share is nobody's."""
     kind, _, value = name.partition(":")
     if kind == "port":
         return os.path.realpath(value) == os.path.realpath(port.name)
-    return value == {"serial": port.serial_number, "location": port.location}[kind]
+    if kind == "location":
+        return value == port.location
+    return value == port.serial_number and value not in shared
 
 
 def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]) -> list[Board]:
@@ -87,12 +89,21 @@ def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]
     shared = shared_serials(on_usb)
     boards = []
     for port in ports:
-        mine = [place for place in places if is_board(port, place.board)]
-        # A serial number that two boards have by now says nothing.
-        mine = [p for p in mine if p.board.partition(":")[0] != "serial" or port.serial_number not in shared]
+        mine = [place for place in places if is_board(port, place.board, shared)]
         name = mine[0].board if mine else board_name(port, shared)
         boards.append(Board(port, name, mine[0] if mine else None))
     return boards
+
+
+def names_now(places: Sequence[Place], boards: Sequence[Board], on_usb: Sequence[Port]) -> list[Place]:
+    """The places by the names that `boards` have now; of two names of one board, the first counts."""
+    shared = shared_serials(on_usb)
+    found: dict[str, Place] = {}
+    for place in places:
+        mine = (board.name for board in boards if is_board(board.port, place.board, shared))
+        name = next(mine, place.board)
+        found.setdefault(name, replace(place, board=name))
+    return list(found.values())
 
 
 def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
@@ -121,9 +132,14 @@ def load_places(path: Path | None) -> list[Place]:
     )
 
 
+def ports_on_usb() -> list[Port]:
+    """Every port on USB, whatever is behind it."""
+    return [describe(info) for info in serial_ports()]
+
+
 def match_ports(patterns: Sequence[str]) -> list[Board]:
     """The boards behind the ports that `--port` names, else all on USB; NoDeviceError if none is there."""
-    return match(find_ports(patterns), [], [describe(info) for info in serial_ports()])
+    return match(find_ports(patterns), [], ports_on_usb())
 
 
 def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
@@ -138,7 +154,7 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
         UsageError: the file is wrong.
     """
     places = load_places(path)
-    on_usb = [describe(info) for info in serial_ports()]
+    on_usb = ports_on_usb()
     if patterns or not places:
         return Found(match(find_ports(patterns), places, on_usb))
     names = [_short(place.board.partition(":")[2]) for place in places if place.board.startswith("port:")]

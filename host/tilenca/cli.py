@@ -8,6 +8,7 @@ import argparse
 import importlib
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from tilenca import __version__, paths
 from tilenca.arguments import Parser
@@ -84,8 +85,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _activation() -> str:
-    activate = paths.ROOT / ".venv" / "bin" / "activate"
-    return f". {activate}" if activate.exists() else f"make -C {paths.ROOT} setup"
+    """What gives this Python the modules: another Python that has them, or if it is that one, its setup."""
+    environment = paths.ROOT / ".venv"
+    activate = environment / "bin" / "activate"
+    if activate.exists() and Path(sys.prefix).resolve() != environment.resolve():
+        return f". {activate}"
+    return f"make -C {paths.ROOT} setup"
 
 
 def _run(arguments: list[str]) -> int:

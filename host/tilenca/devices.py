@@ -5,6 +5,7 @@ Without --ask and --learn nothing is opened: opening its port may reset a Mega.
 
 import argparse
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,10 @@ from tilenca.boards import (
     Found,
     add_fleet_arguments,
     find_boards,
-    is_board,
     match_ports,
+    names_now,
     none_connected,
+    ports_on_usb,
     tell_contradiction,
     tell_models,
 )
@@ -69,6 +71,7 @@ def run(args: argparse.Namespace) -> int:
         learnt, places = _learn(args, present)
         answers, left_out = learnt.answers, learnt.left_out
         present = [replace(board, place=places.get(board.name)) for board in present]
+        found = Found([], find_boards([], args.tiles).missing)
     elif args.ask:
         answers = ask_all([board.port.name for board in present], "tilenca devices")
         for board in present:
@@ -92,11 +95,12 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
     """
     file = args.tiles or DEFAULT
     old, complaint = _before(file)
-    mine = [next((b.name for b in present if is_board(b.port, p.board)), None) for p in old]
-    # Boards by the names they have now.
-    before = [replace(place, board=name or place.board) for place, name in zip(old, mine, strict=True)]
-    away = [place for place, name in zip(old, mine, strict=True) if name is None]
-    learnt = learn(present, args.blink, args.assign, away)
+    if complaint and os.path.lexists(_aside(file)):
+        raise UsageError(
+            f"{complaint.partition('; ')[0]}; correct it, or remove {_aside(file)}: it would be that"
+        )
+    before = names_now(old, present, ports_on_usb())
+    learnt = learn(present, args.blink, args.assign, before)
     if not learnt.places:
         state = "is left as it was" if file.exists() else "is not written"
         raise TilencaError(f"no tile was given a place: {file} {state}; learn again")
@@ -119,12 +123,18 @@ def _before(file: Path) -> tuple[list[Place], str]:
     try:
         return read_tiles(file), ""
     except UsageError as error:
+        if not file.is_file():
+            raise
         return [], str(error)
+
+
+def _aside(file: Path) -> Path:
+    return file.with_name(file.name + ".old")
 
 
 def _put_aside(file: Path, complaint: str) -> None:
     """Keeps a file that cannot be read, lest what a person wrote is lost."""
-    aside = file.with_name(file.name + ".old")
+    aside = _aside(file)
     try:
         file.replace(aside)
     except OSError as error:

@@ -131,23 +131,22 @@ def run(args: argparse.Namespace) -> int:
     found = find_fleet(args.port, args.tiles)
     found.tell_others()
     boards, missing = _failed(found) if args.failed else (found.boards, found.missing)
+    if wanted is not None:
+        boards, missing = _only(wanted, boards), [place for place in missing if place.tile in wanted]
+        if not (boards or missing or args.failed):
+            raise NoDeviceError(
+                f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
+                "`tilenca devices --learn` finds out which tile is which"
+            )
     rows: dict[str, Row] = {}
     interrupted = False
     if boards:
         tool, image = find_avrdude(), _image(args)
-        if wanted is not None:
-            boards = _only(wanted, boards)
-            if not (boards or args.failed):
-                raise NoDeviceError(
-                    f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
-                    "`tilenca devices --learn` finds out which tile is which"
-                )
         rows = {board.port.name: Row(board.port.name, tile=board.tile, board=board.name) for board in boards}
-        interrupted = bool(rows) and _program(args, tool, image, rows)
+        interrupted = _program(args, tool, image, rows)
     absent = [
         Row(None, "missing", 0.0, "not connected; connect it and flash again", place.tile, place.board)
         for place in missing
-        if wanted is None or place.tile in wanted
     ]
     everything = [*rows.values(), *absent]
     if not everything:

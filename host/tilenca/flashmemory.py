@@ -17,9 +17,7 @@ def _file() -> Path:
 def failed_boards() -> set[str]:
     """The names of the boards that are still to be flashed; an unreadable file is an empty one."""
     try:
-        with _file().open(encoding="utf-8", errors="replace") as file:
-            fcntl.flock(file, fcntl.LOCK_SH)
-            return _names(file.read())
+        return _names(_file().read_text(encoding="utf-8", errors="replace"))
     except (OSError, RuntimeError):
         return set()
 
@@ -41,9 +39,9 @@ def remember(done: Mapping[str, bool]) -> None:
     with suppress(OSError, RuntimeError):  # a convenience: no flashing fails for want of it
         path = _file()
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a+", encoding="utf-8", errors="replace") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)  # another call may end at the same moment
-            file.seek(0)
-            failed = (_names(file.read()) | done.keys()) - {name for name, well in done.items() if well}
-            file.truncate(0)
-            file.write(json.dumps(sorted(failed), indent=1) + "\n")
+        with path.with_suffix(".lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)  # another call may end at the same moment
+            failed = (failed_boards() | done.keys()) - {name for name, well in done.items() if well}
+            beside = path.with_suffix(".part")  # where there is no room, what was known stays
+            beside.write_text(json.dumps(sorted(failed), indent=1) + "\n", encoding="utf-8")
+            beside.replace(path)

@@ -17,6 +17,9 @@ from tilenca.protocol import (
 from tilenca.telemetry import Event, Fleet, PortNews, TileView
 from tilenca.wording import printable, words
 
+# The same as for a whole fleet: see `tell_models`.
+REMEDY = "flash the one that differs from most (tilenca flash)"
+
 
 @dataclass(frozen=True)
 class News:
@@ -101,7 +104,7 @@ class Reporter:
             return []
         self._foreign ^= {key}
         if foreign:
-            return [(f"a tile with another model is on {link.side}: flash both (tilenca flash)", True)]
+            return [(f"a tile with another model is on {link.side}: {REMEDY}", True)]
         return [(f"no other model is on {link.side} any more", False)]
 
     def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:

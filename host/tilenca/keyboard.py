@@ -7,6 +7,7 @@ import signal
 import termios
 import time
 import tty
+from contextlib import suppress
 from types import FrameType
 from typing import Self
 
@@ -47,9 +48,9 @@ def is_ours(descriptor: int) -> bool:
 class Keyboard:
     """A terminal's keys; use it as a context manager."""
 
-    def __init__(self, descriptor: int) -> None:
-        """Will read from a terminal that `is_ours`."""
-        self._descriptor = descriptor
+    def __init__(self, descriptor: int, screen: int) -> None:
+        """Will read from a terminal that `is_ours`; on that of `screen` somebody hides the cursor."""
+        self._descriptor, self._screen = descriptor, screen
         self._before = termios.tcgetattr(descriptor)
         self._taken = False
         self._partial = b""
@@ -83,6 +84,7 @@ class Keyboard:
             termios.tcsetattr(self._descriptor, termios.TCSANOW, self._before)
 
     def _leave(self, number: int, frame: FrameType | None) -> None:
+        self._show(b"\x1b[?25h")
         self._give_back()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)  # here we stop, or end
@@ -91,6 +93,12 @@ class Keyboard:
     def _return(self, number: int, frame: FrameType | None) -> None:
         if is_ours(self._descriptor):
             self._take()
+            self._show(b"\x1b[?25l")
+
+    def _show(self, cursor: bytes) -> None:
+        if self._taken:
+            with suppress(OSError):  # the terminal has gone
+                os.write(self._screen, cursor)
 
     def wait(self, seconds: float) -> list[str]:
         """Waits for keys, at most so long; returns those typed, see `parse_keys`."""

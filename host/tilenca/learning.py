@@ -20,7 +20,7 @@ from tilenca.tilesfile import FAR, MAX_TILE_ID, Place
 from tilenca.wording import whole_number
 
 USER = "tilenca devices --learn"
-# Every tile tells of its four sides, one after another: within some of its periods.
+# Every tile tells of its four sides, one after another, one a period: five periods, and no less than this.
 LISTEN_S = 12.0
 # A tile knows a neighbour's new id from its next frame, which comes within a period; and tells it after that.
 SETTLE_S = 0.5
@@ -36,14 +36,15 @@ class Learnt:
     left_out: int
 
 
-def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Place] = ()) -> Learnt:
+def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[Place] = ()) -> Learnt:
     """Asks the tiles who they are and who is on which side; where that is not enough, the person.
 
     Args:
         boards: the boards.
         blink: let each tile blink and ask the person for its place, whatever tiles say.
         assign: give tiles without an id of their own a free one.
-        away: tiles that are not here now: their ids are not free, nor are their places.
+        before: what is known so far, by the boards' names now: of boards that do not answer, neither ids nor
+            places are free.
 
     Raises:
         TilencaError: tiles have no id of their own, or places cannot be found out.
@@ -57,6 +58,8 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
                 warn(f"{name}: {answer.problem}; left out")
         said = {name: answer.hello for name, answer in answers.items() if answer.hello}
         tell_models(said)
+        here = {board.name for board in boards if board.port.name in said}
+        away = [place for place in before if place.board not in here]
         tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
         if not tiles:
             remedy = (
@@ -65,7 +68,13 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, away: Sequence[Pla
             raise TilencaError(f"no tile answers{remedy}")
         renamed = any(tile != said[name].tile for name, tile in tiles.items())
         slowest_s = max(said[name].period_ms for name in tiles) / 1000
-        _listen(reader, fleet, set(tiles), SETTLE_S + 2 * slowest_s if renamed else 0.0)
+        _listen(
+            reader,
+            fleet,
+            set(tiles),
+            SETTLE_S + 2 * slowest_s if renamed else 0.0,
+            max(LISTEN_S, 5 * slowest_s),
+        )
         cells = _asked(reader, tiles, away) if blink else _heard(tiles, fleet)
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
@@ -109,12 +118,12 @@ def _ids(reader: PortReader, said: dict[str, int], assign: bool, away: Sequence[
     return {name: tiles[name] for name in said if name in tiles}
 
 
-def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float) -> None:
+def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float, patience_s: float) -> None:
     """Hears every tile tell of all its sides, as it is in `settle_s`: what is said before is forgotten."""
     settled_s = time.monotonic() + settle_s
     for view in fleet.tiles.values():
         view.links.clear()
-    while (now_s := time.monotonic()) < settled_s + LISTEN_S:
+    while (now_s := time.monotonic()) < settled_s + patience_s:
         for event in reader.poll(TICK_S):
             fleet.take(event)
         if now_s < settled_s:

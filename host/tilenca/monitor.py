@@ -44,7 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     manner.add_argument("--log", action="store_true", help="one line for whatever is new, no picture")
     manner.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
     parser.add_argument(
-        "--seconds", type=not_negative, metavar="S", help="end after S seconds (default: at Ctrl-C)"
+        "--seconds",
+        type=not_negative,
+        metavar="S",
+        help="end after S seconds, with --replay of the recording (default: at Ctrl-C)",
     )
     storage = parser.add_mutually_exclusive_group()
     storage.add_argument(
@@ -54,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--replay",
         type=Path,
         metavar="F",
-        help=f"show a recording instead of reading ports; on a terminal, {KEYS}",
+        help=f"show a recording instead of reading ports; on a terminal, {KEYS} (a pipe does not go back)",
     )
     parser.add_argument(
         "--speed",
@@ -84,8 +87,9 @@ def run(args: argparse.Namespace) -> int:
                 speed = 1.0 if args.speed is None else args.speed
                 player = Player(lambda: iter(choice), speed, TICK_S, args.start or 0.0)
                 display = _display(args, fleet, Grid(load_places(args.tiles)), stack, player)
-                if _show(iter(player), fleet, display, None, args.seconds):
-                    choice.complain(args.start or 0.0)
+                start_s = args.start or 0.0
+                _show(iter(player), fleet, display, None, args.seconds, start_s)
+                choice.complain(start_s)
             else:
                 source, grid = _listen(args, stack)
                 record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
@@ -109,19 +113,19 @@ def _show(
     display: Display,
     record: Recorder | None,
     seconds: float | None,
-) -> bool:
-    """Shows all that comes; whether it came to its end before `seconds` were over."""
+    start_s: float = 0.0,
+) -> None:
+    """Shows all that comes, until `seconds` after it has come `start_s` far."""
     began_s: float | None = None
     for now_s, events in source:
-        began_s = now_s if began_s is None else began_s
+        began_s = now_s + start_s if began_s is None else began_s
         if seconds is not None and now_s - began_s > seconds:
-            return False
+            return
         for event in events:
             fleet.take(event)
         if record and events:
             record.write(map(format_event, events))
         display.show(now_s, events)
-    return True
 
 
 def _listen(args: argparse.Namespace, stack: ExitStack) -> tuple[Events, Grid]:
@@ -191,9 +195,9 @@ def _display(
     display = LiveView(fleet, grid, console, args.table, about)
     if player and sys.stdin and is_ours(sys.stdin.fileno()):
         with held_back():  # whoever takes the terminal is sure to give it back
-            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno())).wait
+            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno(), sys.stdout.fileno())).wait
         if args.replay.is_file():  # what comes through a pipe comes once
             player.begin_again = display.begin_again
-        display.footer = lambda: f"{player.status}; {KEYS}"
+        display.footer = lambda: f"{player.status}; {player.keys}"
     stack.enter_context(display.live)
     return display

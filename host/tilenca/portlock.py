@@ -9,6 +9,9 @@ from pathlib import Path
 from tilenca.errors import TilencaError
 from tilenca.ports import is_pty
 
+# All must lock in the same place, whatever their TMPDIR.
+FOLDER = Path("/tmp/tilenca-locks")
+
 
 def holders(names: Iterable[str]) -> dict[str, str]:
     """Which other program has which port open, as far as /proc shows: `screen (pid 123)`.
@@ -69,14 +72,12 @@ def port_lock(name: str, user: str) -> Iterator[int]:
         PortBusyError: it is taken.
         TilencaError: the lock cannot be made.
     """
-    # Not tempfile.gettempdir(), which looks elsewhere when the disk is full: all must lock in the same place.
-    folder = Path(os.environ.get("TMPDIR") or "/tmp") / "tilenca-locks"
-    path = folder / os.path.realpath(name).strip("/").replace("/", "-")
+    path = FOLDER / os.path.realpath(name).strip("/").replace("/", "-")
     try:
         descriptor = _open_shared(path)
     except OSError as error:
         raise TilencaError(
-            f"{path}: {error.strerror}, but ports are locked there; remove {path.parent} or set TMPDIR"
+            f"{path}: {error.strerror}, but ports are locked there; remove {path.parent}"
         ) from error
     try:
         try:

@@ -9,7 +9,7 @@ import selectors
 import subprocess
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -141,7 +141,7 @@ def program_all(
             fleet.step()
     except KeyboardInterrupt:
         begun = {outcome.port: outcome for outcome in fleet.stop()}
-        for name in [*begun, *waiting]:
+        for name in fleet.pending(names):
             before = begun.get(name, Outcome(name, "failed", 0.0))
             fleet.outcomes[name] = replace(before, result="interrupted", error="interrupted; flash it again")
     finally:
@@ -216,6 +216,10 @@ class _Fleet:
             self.start(run.port)
         else:
             self._done(replace(outcome, attempts=attempts))
+
+    def pending(self, names: Iterable[str]) -> list[str]:
+        """Those that have no outcome yet, wherever an interrupt found them."""
+        return [name for name in names if name not in self.outcomes]
 
     def _done(self, outcome: Outcome) -> None:
         self.outcomes[outcome.port] = outcome

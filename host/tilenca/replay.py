@@ -54,6 +54,11 @@ class Player:
         pace = "paused" if self._paused else f"x {self._speed:g}" if self._speed else "at once"
         return f"{self.position_s:.0f} s, {pace}"
 
+    @property
+    def keys(self) -> str:
+        """What keys do; only what can be read again goes back."""
+        return KEYS if self.begin_again else KEYS.replace("left/right", "right")
+
     def __iter__(self) -> Iterator[tuple[float, list[Event]]]:
         while True:
             yield from self._play()

@@ -14,12 +14,10 @@ class Update:
 
     Attributes:
         places: all its tiles.
-        kept: those that were not learnt now and stay as they were.
         remarks: what a person should know, a line each.
     """
 
     places: list[Place]
-    kept: list[Place]
     remarks: list[str]
 
 
@@ -49,12 +47,14 @@ def update(before: Sequence[Place], learnt: Sequence[Place], kept: Iterable[Plac
     for place in learnt:
         if other := taken.get((place.row, place.col)):
             raise TilencaError(
-                f"tile {place.tile} lies where tile {other.tile} ({other.board}), which was not heard: at "
-                f"{place.row},{place.col}; remove its [[tile]] or connect it, then learn again"
+                f"tile {place.tile} lies where tile {other.tile} ({other.board}), which was not learnt now: "
+                f"at {place.row},{place.col}; remove its [[tile]] or connect it, then learn again"
             )
     if stay:
-        remarks.append(f"kept as they were, since they were not heard now: {tile_list(p.tile for p in stay)}")
-    return Update([*learnt, *stay], stay, remarks)
+        remarks.append(
+            f"kept as they were, since they were not learnt now: {tile_list(p.tile for p in stay)}"
+        )
+    return Update([*learnt, *stay], remarks)
 
 
 def _aligned(

@@ -9,7 +9,17 @@ import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
 from tilenca import ports
-from tilenca.boards import board_name, find_boards, find_fleet, tell_contradiction, tell_models, tile_numbers
+from tilenca.boards import (
+    board_name,
+    find_boards,
+    find_fleet,
+    match,
+    names_now,
+    ports_on_usb,
+    tell_contradiction,
+    tell_models,
+    tile_numbers,
+)
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, UsageError
 from tilenca.ports import Port
@@ -82,6 +92,22 @@ def test_a_serial_number_that_two_boards_have_by_now_names_none(lab: list[ListPo
     found = find_boards([], None)
     assert [board.tile for board in found.boards] == [1]
     assert [place.tile for place in found.missing] == [7]
+
+
+def test_learning_knows_boards_by_their_names_now_and_each_once(lab: list[ListPortInfo]) -> None:
+    boards = match(ports_on_usb(), [], ports_on_usb())
+    old = [
+        Place(1, "serial:855", 0, 0),
+        Place(2, "location:1-1", 0, 1),
+        Place(7, "serial:A50285BI", 0, 2),
+        Place(8, "location:1-2.3", 0, 3),
+    ]
+    known = names_now(old, boards, ports_on_usb())
+    assert [(place.tile, place.board) for place in known] == [
+        (1, "serial:855"),
+        (7, "serial:A50285BI"),
+        (8, "location:1-2.3"),
+    ]
 
 
 def test_no_listed_tile_at_all_is_no_device(lab: list[ListPortInfo]) -> None:

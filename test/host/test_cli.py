@@ -1,5 +1,6 @@
 """The command line as a whole: help, usage errors, exit statuses."""
 
+import importlib
 import os
 import signal
 import subprocess
@@ -60,6 +61,20 @@ def test_a_python_without_the_packages_is_told_in_one_line(launcher: str) -> Non
     assert done.stderr.startswith(f"tilenca: {sys.executable} has no module '")
     assert done.stderr.endswith((".venv/bin/activate\n", " setup\n"))
     assert done.stderr.count("\n") == 1
+
+
+def test_an_environment_that_lacks_a_module_is_to_be_set_up_not_activated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    activate = tmp_path / ".venv" / "bin" / "activate"
+    activate.parent.mkdir(parents=True)
+    activate.touch()
+    monkeypatch.setattr(paths, "ROOT", tmp_path)
+    monkeypatch.setattr(devices, "run", lambda _: importlib.import_module("no_such_module"))
+    for prefix, remedy in (("/usr", f". {activate}"), (f"{tmp_path}/.venv", f"make -C {tmp_path} setup")):
+        monkeypatch.setattr(sys, "prefix", prefix)
+        assert main(["devices"]) == 1
+        assert capsys.readouterr().err.endswith(f"has no module 'no_such_module'; first: {remedy}\n")
 
 
 def test_commands_without_tensors_do_not_import_torch() -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca import monitor
+from tilenca import monitor, portlock
 from tilenca.cli import main
 from tilenca.errors import NoDeviceError, TilencaError
 from tilenca.portlock import PortBusyError, holders, port_lock
@@ -139,6 +139,15 @@ def test_where_no_port_may_be_opened_nothing_is_learnt_and_flashing_is_not_advis
     assert file.read_text() == "of somebody's own"
 
 
+def test_a_lock_holds_for_users_with_another_folder_for_temporary_files(
+    pty: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with port_lock(pty, "us"):
+        monkeypatch.setenv("TMPDIR", str(tmp_path))
+        with pytest.raises(PortBusyError, match="us"), port_lock(pty, "other"):
+            pass
+
+
 def test_a_child_keeps_the_lock_it_was_given_until_it_ends(pty: str) -> None:
     with port_lock(pty, "tilenca flash") as descriptor:
         child = subprocess.Popen(
@@ -186,6 +195,6 @@ def test_locks_that_cannot_be_kept_are_told(
     pty: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tilenca-locks").write_text("a file of somebody's")
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    with pytest.raises(TilencaError, match=r"tilenca-locks.*Not a directory.*TMPDIR"), port_lock(pty, "us"):
+    monkeypatch.setattr(portlock, "FOLDER", tmp_path / "tilenca-locks")
+    with pytest.raises(TilencaError, match=r"tilenca-locks.*Not a directory.*remove"), port_lock(pty, "us"):
         pass

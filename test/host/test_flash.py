@@ -16,7 +16,7 @@ import pytest
 from bootloader_stand_in import ATMEGA_328P, StandIn
 from test_ihex import image
 
-from tilenca import paths
+from tilenca import paths, programming
 from tilenca.avrdude import Output, Progress, find_avrdude
 from tilenca.cli import main
 from tilenca.errors import TilencaError
@@ -149,6 +149,48 @@ def test_what_to_do_is_known_before_anything_is_built(
         assert main(["flash", "--only", "x", "--port", board.port]) == 2
         assert main(["flash", "--failed", "--port", board.port]) == 0
     assert "nothing to do" in capsys.readouterr().err
+
+
+def test_an_interrupt_before_a_board_is_begun_is_one_like_any(
+    firmware: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(programming, "holders", interrupt)
+    with StandIn() as first, StandIn() as second:
+        names = [first.port, second.port]
+        done = programming.program_all(find_avrdude(), firmware, names, 2, 2.0, lambda *news: None)
+    assert [(outcome.port, outcome.result) for outcome in done] == [(name, "interrupted") for name in names]
+
+
+def test_a_tile_that_is_wanted_and_missing_is_a_row_and_remembered(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(paths, "ROOT", tmp_path)  # no project there: a build would fail
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    gone = f"port:{tmp_path}/gone"
+    file = tmp_path / "tiles.toml"
+    with StandIn() as board:
+        write_tiles(file, [Place(1, f"port:{board.port}", 0, 0), Place(3, gone, 0, 1)])
+        assert main(["flash", "--only", "3", "--json", "--tiles", str(file)]) == 1
+        assert main(["flash", "--only", "4", "--tiles", str(file)]) == 3
+    [row] = json.loads(capsys.readouterr().out)["tiles"]
+    assert (row["tile"], row["result"]) == (3, "missing")
+    assert failed_boards() == {gone}
+
+
+def test_where_there_is_no_room_what_failed_before_is_still_known(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    remember({"port:1": False})
+    program = (
+        "import resource; from tilenca.flashmemory import remember; "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); remember({'port:2': False})"
+    )
+    subprocess.run([sys.executable, "-c", program], timeout=LIMIT_S, check=True)
+    assert failed_boards() == {"port:1"}
 
 
 def test_calls_that_end_at_the_same_moment_forget_nothing(

@@ -175,7 +175,7 @@ def test_a_person_says_where_blinking_tiles_lie(lab: Lab, tmp_path: Path) -> Non
     assert f"no tile was given a place: {file} is left as it was" in nothing.stderr
     assert file.read_bytes() == before
     one = tilenca(lab, "devices", "--learn", "--tiles", str(file), *ports[:2])
-    assert "kept as they were, since they were not heard now: tile 2" in one.stderr
+    assert "kept as they were, since they were not learnt now: tile 2" in one.stderr
     assert file.read_bytes() == before
 
 

@@ -89,7 +89,7 @@ def test_a_tile_with_another_model_is_marked_and_told_once_until_it_has_ours() -
         if second == 4:
             assert Grid().cells(lab.fleet, 1.0)[0, 0].marks["E"] is Mark.FOREIGN
     assert [text for text in lab.news if "model" in text] == [
-        "a tile with another model is on E: flash both (tilenca flash)"
+        "a tile with another model is on E: flash the one that differs from most (tilenca flash)"
     ]
     lab.say("a", LinkSentence(1, 16_000, "E", 0, 0, 0, 0, 50, None, 0, None, None))
     assert lab.news[-1] == "no other model is on E any more"

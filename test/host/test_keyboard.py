@@ -172,7 +172,9 @@ def test_ctrl_z_gives_the_terminal_back_until_the_job_goes_on(replay: Replay) ->
         while stat.read().rpartition(")")[2].split()[0] != "T":
             stat.seek(0)
     assert replay.is_restored
+    replay.read_until("\x1b[?25h")
     os.kill(replay.pid, signal.SIGCONT)
+    replay.read_until("\x1b[?25l")
     replay.type(RIGHT)
     replay.read_until("10 s, x 0.001")
     assert not replay.is_restored

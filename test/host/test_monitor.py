@@ -221,6 +221,16 @@ def test_lines_of_a_replay_begin_where_it_does(
     assert f"{recorded}: --from 99 is past its end, at 10.0 s" in captured.err
 
 
+def test_seconds_of_a_replay_count_from_where_it_begins(
+    recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(replayed(recorded, "--from", "8", "--seconds", "1")) == 0
+    captured = capsys.readouterr()
+    assert len(captured.out.splitlines()) == 4
+    assert main(replayed(recorded, "--from", "99", "--seconds", "1")) == 0
+    assert f"{recorded}: --from 99 is past its end, at 10.0 s" in capsys.readouterr().err
+
+
 def test_the_log_is_what_is_new(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(replayed(recorded, "--log", "--from", "3")) == 0
     assert [line.split(" ", 1)[1] for line in capsys.readouterr().out.splitlines()] == [

@@ -88,7 +88,9 @@ def test_going_back_begins_again_and_plays_what_is_before_at_once() -> None:
 
 def test_what_can_be_read_only_once_does_not_go_back() -> None:
     clock = Clock([(2.0, "left")])
-    assert heard(clock, player(clock, [0.0, 3.0], 1.0)) == [(0.0, 0.0), (3.0, 3.0)]
+    played = player(clock, [0.0, 3.0], 1.0)
+    assert played.keys.startswith("space: pause, right: 10 s, up")
+    assert heard(clock, played) == [(0.0, 0.0), (3.0, 3.0)]
 
 
 def test_the_speed_is_doubled_and_halved_within_bounds() -> None:

@@ -12,13 +12,13 @@ ROW = [Place(tile, f"serial:{tile}", 2, tile) for tile in range(1, 6)]
 def test_when_all_are_heard_the_file_is_what_was_learnt() -> None:
     moved = [Place(tile, f"serial:{tile}", tile, 0) for tile in range(1, 6)]
     new = update(ROW, moved, [], fixed=False)
-    assert (new.places, new.kept, new.remarks) == (moved, [], [])
+    assert (new.places, new.remarks) == (moved, [])
 
 
 def test_one_tile_alone_stays_where_it_was_and_so_do_the_others() -> None:
     new = update(ROW, [Place(3, "serial:3", 0, 0)], [*ROW[:2], *ROW[3:]], fixed=False)
     assert sorted(new.places, key=lambda place: place.tile) == ROW
-    assert new.remarks == ["kept as they were, since they were not heard now: tiles 1, 2, 4, 5"]
+    assert new.remarks == ["kept as they were, since they were not learnt now: tiles 1, 2, 4, 5"]
 
 
 def test_a_row_that_grew_lies_where_most_of_it_was() -> None:
