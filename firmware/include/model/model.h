@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model 5A0C; do not edit. Body 6d4b002d76a2c0d7
+// Rendered by `tilenca export` from model D968; do not edit. Body ecade7f02d416764
 #pragma once
 
 #include <stdint.h>
@@ -8,7 +8,7 @@
 namespace tilenca {
 namespace model {
 
-constexpr uint16_t kModelId = 0x5A0C;
+constexpr uint16_t kModelId = 0xD968;
 constexpr uint8_t kChannels = 21;
 constexpr uint8_t kHidden1 = 96;
 constexpr uint8_t kHidden2 = 96;
