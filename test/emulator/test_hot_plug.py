@@ -18,7 +18,7 @@ from tilenca.shapes import STEPS, Shape, connected, load_task
 from tilenca.telemetry import LineReader
 
 SEED = 5
-PERIOD_MS = 100
+PERIOD_MS = 20  # what tiles come with
 BETWEEN_S = 0.3  # three updates from one change to the next
 PATIENCE_S = 5.0
 STAYS_S = 1.0
