@@ -69,7 +69,7 @@ def test_json_of_one_shape_is_one_object(capsys: pytest.CaptureFixture[str]) -> 
     middle = report["tiles"][2]["frames"]
     assert set(middle) == {"sent", "received", "corrupt", "lost"}
     assert middle["lost"] == 0
-    assert middle["received"] >= 50
+    assert middle["received"] >= 30
 
 
 def test_a_seed_makes_a_run_reproducible(capsys: pytest.CaptureFixture[str]) -> None:
