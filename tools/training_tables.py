@@ -127,16 +127,8 @@ def rendered(text: str) -> str:
 def measure(name: str) -> None:
     """Asks a shipped model again all that its card shows, and keeps the answers in its metrics."""
     metrics, model = metrics_of(name), load_model(MODELS / name)
-    words = [
-        sys.executable,
-        "-m",
-        "tilenca.cli",
-        "evaluate",
-        "--exam",
-        "--json",
-        "--model",
-        str(MODELS / name),
-    ]
+    words = [sys.executable, "-m", "tilenca.cli", "evaluate", "--exam", "--json"]
+    words += ["--model", str(MODELS / name)]
     words += ["--shapes", *(str(paths.ROOT / place) for place in model.made["shapes"])]
     words += ["--runs", str(metrics["runs_per_drawing"]), "--seed", str(metrics["seed"])]
     answer = subprocess.run(words, check=True, capture_output=True, text=True).stdout

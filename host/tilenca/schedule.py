@@ -108,6 +108,11 @@ def draw_schedule(
     """
     samples, cells, rounds = len(batch.starts), len(batch.sample), int(lives.max())
     life = lives[batch.sample]
+
+    def share(most: float, affected: float) -> NDArray[np.float64]:
+        """(B,) of its messages that each sample loses; nothing in those that are calm."""
+        return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.calm
+
     now = np.arange(rounds)[:, None]
     rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
     fires = random.random((rounds, cells), dtype=np.float32) < rate.astype(np.float32)
@@ -118,8 +123,7 @@ def draw_schedule(
         on_clock = np.flatnonzero(strict)
         fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, rounds, random)
     if recipe.unheard > 0:
-        unheard = random.uniform(0, recipe.max_unheard, samples) * (random.random(samples) < recipe.unheard)
-        unheard *= ~given.calm
+        unheard = share(recipe.max_unheard, recipe.unheard)
         strict |= unheard[batch.sample] > 0
         some = np.flatnonzero(unheard[batch.sample])
         arrives[:, some] &= (
@@ -133,11 +137,7 @@ def draw_schedule(
     if known.any():
         neighbours[np.append(known, 0)[neighbours] > when[:, None]] = cells
     if recipe.lossy > 0:
-        loss = (
-            random.uniform(0, recipe.max_loss, samples)
-            * (random.random(samples) < recipe.lossy)
-            * ~given.calm
-        )
+        loss = share(recipe.max_loss, recipe.lossy)
         lasts = random.integers(1, recipe.longest_loss + 1, samples)
         fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
         neighbours[fate < loss[batch.sample][who, None]] = cells

@@ -19,12 +19,11 @@ from tilenca.drawings import Drawings
 from tilenca.errors import InterruptedRunError, TilencaError
 from tilenca.exam import Exam, aims_of, set_exam
 from tilenca.interrupts import SIGNALS
-from tilenca.modelfile import Model, checkpoint_path
-from tilenca.quantise import quantise
+from tilenca.modelfile import checkpoint_path
 from tilenca.rollout import use_threads
 from tilenca.simulate import FastEngine
 from tilenca.sizes import Sizes
-from tilenca.training import Config, Trained, Trainer
+from tilenca.training import Config, Trained, Trainer, model_of
 from tilenca.validation import Examiner
 
 CHECKPOINT_EVERY_S = 45.0
@@ -93,11 +92,6 @@ def make_trainer(job: Job) -> Trainer:
     if job.resume and job.checkpoint.exists():
         trainer.load(job.checkpoint)
     return trainer
-
-
-def model_of(trained: Trained, made: dict[str, object]) -> tuple[Model, int]:
-    """The integer model of what was trained, and how many weights had to be cut."""
-    return quantise(trained.config.dimensions, trained.config.labels, trained.weights, made)
 
 
 def train(job: Job, tell: Tell) -> Trained:

@@ -1,7 +1,7 @@
 """What `tiles.toml` says after tiles were learnt anew: entries of boards not seen stay. Pure."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tilenca.errors import TilencaError
@@ -21,7 +21,7 @@ class Update:
     remarks: list[str]
 
 
-def update(before: Sequence[Place], learnt: Sequence[Place], kept: Iterable[Place], fixed: bool) -> Update:
+def update(before: Sequence[Place], learnt: Sequence[Place], kept: Sequence[Place], fixed: bool) -> Update:
     """Joins what was learnt with what is kept.
 
     What tiles say of their neighbours leaves open where all of them lie: beside what is kept, they stay where

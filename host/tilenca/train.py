@@ -122,9 +122,9 @@ def run(args: argparse.Namespace) -> int:
     _announce(plan, fits)
 
     from tilenca.keeping import Result, keep
-    from tilenca.seedrun import Job, model_of, train_side_by_side
+    from tilenca.seedrun import Job, train_side_by_side
     from tilenca.simulate import FastEngine, processors
-    from tilenca.training import Config
+    from tilenca.training import Config, model_of
     from tilenca.trainview import show_training
     from tilenca.validation import validate
 
@@ -232,9 +232,8 @@ def _check_device(device: str) -> None:
 
 def _best(jobs: "list[Job]", exam_seed: int) -> "Trained":
     """Of what was trained to its end, that which falls short of its targets least."""
-    from tilenca.seedrun import model_of
     from tilenca.simulate import FastEngine
-    from tilenca.training import trained_at
+    from tilenca.training import model_of, trained_at
     from tilenca.validation import Examiner
 
     finished = []

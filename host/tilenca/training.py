@@ -20,7 +20,7 @@ from tilenca.curriculum import Curriculum
 from tilenca.drawings import Batch
 from tilenca.errors import TilencaError
 from tilenca.model import TileNet, initial_arrays
-from tilenca.modelfile import Dimensions
+from tilenca.modelfile import Dimensions, Model
 from tilenca.pool import Pools
 from tilenca.quantise import quantise
 from tilenca.recipes import Recipe
@@ -198,8 +198,7 @@ class Trainer:
                 self.average[name].lerp_(value, 1 - keep)
 
     def _live_ahead(self) -> None:
-        kept = self.now()
-        model, _ = quantise(self.config.dimensions, self.config.labels, kept.weights, {})
+        model, _ = model_of(self.now(), {})
         recipe = self.config.recipe
         live_ahead(model, self.pools.quiet, self.drawings, recipe.ahead, self.random)
         put_what_is_stuck(model, self.pools, recipe.trials, self.random)
@@ -278,6 +277,11 @@ def trained_at(path: Path, config: Config) -> Trained:
     weights = {name: value.numpy() for name, value in tensors.items()}
     history, checks = ([tuple(row) for row in state[rows]] for rows in ("history", "checks"))
     return Trained(config, weights, kept, state["iteration"], state["ended"], history, checks, state["done"])
+
+
+def model_of(trained: Trained, made: dict[str, object]) -> tuple[Model, int]:
+    """The integer model of what was trained, and how many weights had to be cut."""
+    return quantise(trained.config.dimensions, trained.config.labels, trained.weights, made)
 
 
 def _all_right(scores: Tensor, target: Tensor, batch: Batch) -> NDArray[np.bool_]:
