@@ -18,6 +18,7 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError, image_error
+from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, number, seed, size, whole
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
@@ -77,7 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="shape file (shapes/digits.toml)",
     )
     add("--size", type=size, metavar="RxC", help="stretch the shapes to so many rows and columns, like 9x7")
-    add("--elf", type=Path, default=paths.FIRMWARE_ELF, metavar="F", help="firmware image (the last build's)")
+    add("--elf", type=Path, metavar="F", help="firmware image (the last build's, or the one of the package)")
     length = parser.add_mutually_exclusive_group()
     length.add_argument(
         "--seconds", type=number(0.001, MAX_SECONDS), metavar="S", help="run for S emulated seconds"
@@ -162,8 +163,9 @@ def run(args: argparse.Namespace) -> int:
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
-    _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
-    defaults = firmware_settings(args.elf)
+    image = args.elf or firmware_image()
+    _check_readable(image, f"{build_remedy()}, or give --elf")
+    defaults = firmware_settings(image)
     conditions = Conditions(
         seconds=args.seconds,
         updates=args.updates or DEFAULT_UPDATES,
@@ -178,7 +180,7 @@ def run(args: argparse.Namespace) -> int:
     )
 
     def lay_out(shape: Shape) -> Emulation:
-        return Emulation(task, shape, args.elf, conditions, defaults)
+        return Emulation(task, shape, image, conditions, defaults)
 
     if args.serve is not None:
         emulation = lay_out(shapes[0])

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
+from tilenca.base.project import build_remedy, firmware_image, install_remedy
 from tilenca.commands.arguments import count, seed, share, size
 from tilenca.evaluation.metrics import SETTLED, settle_times, validate
 from tilenca.evaluation.suites import Aims, set_exam
@@ -184,7 +185,7 @@ def _engine(name: str, model: Model) -> Engine:
         from tilenca.training.float_engine import FloatEngine
     except ImportError as error:
         raise UsageError(
-            "--engine float needs PyTorch; use --engine fast, or run: make setup-train"
+            f"--engine float needs PyTorch; use --engine fast, or run: {install_remedy('train')}"
         ) from error
     return FloatEngine(model)
 
@@ -197,20 +198,21 @@ def _emulate(
 
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
-    if not paths.FIRMWARE_ELF.exists():
-        raise BuildError(f"{paths.FIRMWARE_ELF}: no firmware image; run `make demo` or `pio run`")
+    image = firmware_image()
+    if not image.exists():
+        raise BuildError(f"{image}: no firmware image; {build_remedy()}")
     tasks = [load_task(path) for path in args.shapes]
-    defaults = firmware_settings(paths.FIRMWARE_ELF)
+    defaults = firmware_settings(image)
     right, settled = [], []
     for run, number in enumerate(chosen):
         shape = drawings.shapes[number]
         powering = Powering(updates=args.steps, seed=args.seed * 1000 + run)
-        tissue = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, powering, defaults)
+        tissue = Emulation(tasks[drawings.groups[number]], shape, image, powering, defaults)
 
         def check(running: Emulation, _: list[Any]) -> None:
             if running.hello is not None and running.hello.model_id != model.model_id:
                 raise BuildError(
-                    f"{paths.FIRMWARE_ELF}: carries model {running.hello.model_id:04X}, not "
+                    f"{image}: carries model {running.hello.model_id:04X}, not "
                     f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
                 )
 
