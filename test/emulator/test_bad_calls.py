@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import hex_record
+from support.avr import hex_record
 
-from tilenca import native_library
+from tilenca.base import native_library
 
 TILES = 2
 NO_NUMBERS = (math.nan, math.inf, -math.inf)
@@ -21,7 +21,7 @@ FAULT_FIELDS = ("loss", "flip", "delay_s", "baud")
 def image(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """A program that loops at its first instruction."""
     path = tmp_path_factory.mktemp("image") / "loop.hex"
-    path.write_text(hex_record(0, 0, bytes.fromhex("ffcf")) + ":00000001FF\n")
+    path.write_text(hex_record(0, 0, bytes.fromhex("ffcf")) + hex_record(1, 0, b""))
     return str(path).encode()
 
 
@@ -303,7 +303,7 @@ def test_threads_that_the_machine_does_not_give_are_an_error_and_no_end(image: b
     script = tmp_path / "few_threads.py"
     script.write_text(
         "import resource, sys\n"
-        "from tilenca import native_library\n"
+        "from tilenca.base import native_library\n"
         "library = native_library.load('emulator')\n"
         "lib, ffi = library.lib, library.ffi\n"
         "array = lib.tilenca_array_new(sys.argv[1].encode(), ffi.NULL, 2, [0.0] * 2, [0.0] * 2)\n"

@@ -1,0 +1,199 @@
+"""Python face of the compiled tissue (tools/simulator): who updates when, hears what, and is there at all.
+
+`Tissue` does it all for the firmware's core. `Plan` only says what happens, round by round, to those who
+compute states of another kind; both follow the same schedule, number by number.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.model.file import Model
+from tilenca.simulator.core_library import library, model_struct, pointer
+
+TICKS = 20  # TILENCA_TICKS of simulator.h: the resolution of a step on clocks
+UNITS_PER_STEP = TICKS << 16  # TILENCA_UNITS_PER_TICK
+LOSS_UNITS = 1 << 32
+DARK = -1
+FAULTS = ("none", "dead", "stuck", "away")  # TILENCA_FAULT_... in their order
+NOBODY = -1
+
+Cells = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Setup:
+    """R runs of N cells in all, and what they have to live with; times on clocks are in units of a step.
+
+    Attributes:
+        starts: (R + 1,) the first cell of each run, and N.
+        neighbours: (N, 4) N, E, S, W; N for none.
+        alive: (N,) false: never there.
+        target: (N,) the class that is right.
+        seeds: (R,) uint64, decides all chance during the run.
+        loss: share of messages lost.
+        zeros: whether a lost message reads as zeros; else the last one is held.
+        clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None:
+            the paper's sampler.
+        fault: one of `FAULTS`.
+        faulty: (R,) the cell with the fault, `NOBODY` for none.
+        begin: first step of the fault.
+        end: step at which a tile that was away is back.
+    """
+
+    starts: NDArray[Any]
+    neighbours: NDArray[Any]
+    alive: NDArray[np.bool_]
+    target: NDArray[Any]
+    seeds: NDArray[np.uint64]
+    loss: float
+    zeros: bool
+    clocks: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float] | None
+    fault: str
+    faulty: NDArray[Any]
+    begin: int
+    end: int
+
+
+def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
+    """Times as the schedule counts them."""
+    counted: NDArray[np.int64] = np.rint(np.asarray(steps) * UNITS_PER_STEP).astype(np.int64)
+    return counted
+
+
+def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
+    """The setup as `tilenca_setup`, and what must live as long as that."""
+    first, period, latency, start = setup.clocks or (np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
+    arrays = {
+        "starts": pointer(setup.starts.astype(np.int32), "int32_t"),
+        "neighbours": pointer(np.ascontiguousarray(setup.neighbours, np.int32), "int32_t"),
+        "alive": pointer(setup.alive.astype(np.uint8), "uint8_t"),
+        "target": pointer(setup.target.astype(np.int8), "int8_t"),
+        "seeds": pointer(np.ascontiguousarray(setup.seeds, np.uint64), "uint64_t"),
+        "first": pointer(units(first), "int64_t"),
+        "period": pointer(units(period), "int64_t"),
+        "latency": pointer(units(latency), "int64_t"),
+        "faulty": pointer(setup.faulty.astype(np.int32), "int32_t"),
+    }
+    numbers = {
+        "runs": len(setup.seeds),
+        "cells": len(setup.alive),
+        "loss": round(setup.loss * LOSS_UNITS),
+        "zeros": setup.zeros,
+        "clocks": setup.clocks is not None,
+        "start": int(units(start)),
+        "fault": FAULTS.index(setup.fault),
+        "begin": setup.begin,
+        "end": setup.end,
+    }
+    return library().ffi.new("tilenca_setup*", numbers | arrays), list(arrays.values())
+
+
+class Tissue:
+    """Runs by the firmware's core.
+
+    Args:
+        model: its integer weights are used.
+        setup: the runs.
+        states: (N, C) int16, contiguous; changed in place.
+        shown: (N,) int8, the class each tile shows, `DARK` for none; changed in place.
+
+    Raises:
+        BuildError: the library is not built.
+        ValueError: the states are of another type.
+    """
+
+    def __init__(
+        self, model: Model, setup: Setup, states: NDArray[np.int16], shown: NDArray[np.int8]
+    ) -> None:
+        if states.dtype != np.int16 or not states.flags.c_contiguous:
+            raise ValueError(f"states are {states.dtype}, wanted: contiguous int16")
+        self._runs, self._cells = len(setup.seeds), len(setup.alive)
+        given, *kept = _setup_struct(setup)
+        network, _weights = model_struct(model)
+        cells = pointer(states, "int16_t"), pointer(shown, "int8_t")
+        self._kept = kept, cells
+        self._batch = library().call("grid_batch_new", network, given, *cells)
+
+    def __del__(self) -> None:
+        if hasattr(self, "_batch"):
+            library().call("grid_batch_free", self._batch)
+
+    def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
+        """Lives on for as many steps as there is room for.
+
+        Args:
+            right: (T, R), filled with the share of tiles right after each step, of those asked.
+            shown: (T, N), filled with what each tile shows; None: not wanted.
+            threads: how many to use; the result does not depend on it.
+        """
+        for array, width in ((right, self._runs), (shown, self._cells)):
+            if array is not None and not (array.flags.c_contiguous and array.shape == (len(right), width)):
+                raise ValueError(f"a result is {array.shape}, wanted: ({len(right)}, {width}), contiguous")
+        trajectory = library().ffi.NULL if shown is None else pointer(shown, "int8_t")
+        library().call(
+            "grid_batch_run", self._batch, len(right), threads, pointer(right, "float"), trajectory
+        )
+
+    @property
+    def updates(self) -> int:
+        """Cell updates computed in all."""
+        return int(library().call("grid_batch_updates", self._batch))
+
+
+@dataclass(frozen=True)
+class Round:
+    """What happens in a round, in this order.
+
+    Attributes:
+        gone: cells that fall silent and dark.
+        born: cells that are switched on again in the seed state, and have heard nobody.
+        senders: (A,) cells whose message of now arrives.
+        arrives: (A, 4) bool, on which sides.
+        updating: (U,) cells that update.
+        absent: (U, 4) bool, the sides that they read as zeros.
+        last: whether it is the last round of a step.
+    """
+
+    gone: Cells
+    born: Cells
+    senders: Cells
+    arrives: NDArray[np.bool_]
+    updating: Cells
+    absent: NDArray[np.bool_]
+    last: bool
+
+
+class Plan:
+    """The schedule of runs, without their states."""
+
+    def __init__(self, setup: Setup) -> None:
+        given, self._kept = _setup_struct(setup)
+        self._tick = library().ffi.new("tilenca_tick*")
+        self._schedule = library().call("schedule_new", given)
+
+    def __del__(self) -> None:
+        if hasattr(self, "_schedule"):
+            library().call("schedule_free", self._schedule)
+
+    def next(self) -> Round:
+        """Plans the next tick."""
+        last = bool(library().call("schedule_next", self._schedule, self._tick))
+        senders, arrives = _events(self._cells("deliveries", 2))
+        updating, absent = _events(self._cells("updates", 2))
+        gone, born = self._cells("switched_off", 1)[:, 0], self._cells("switched_on", 1)[:, 0]
+        return Round(gone, born, senders, arrives, updating, absent, last)
+
+    def _cells(self, name: str, width: int) -> Cells:
+        """A list of the tick as (its length, width)."""
+        count = getattr(self._tick, f"{name}_count")
+        if count == 0:
+            return np.zeros((0, width), np.int32)
+        memory = library().ffi.buffer(getattr(self._tick, name), 4 * width * count)
+        return np.frombuffer(memory, np.int32).reshape(count, width).copy()
+
+
+def _events(pairs: Cells) -> tuple[Cells, NDArray[np.bool_]]:
+    return pairs[:, 0], (pairs[:, 1:] >> np.arange(4) & 1).astype(np.bool_)
