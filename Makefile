@@ -21,7 +21,7 @@ unexport PLATFORMIO_CORE_DIR
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check demo test check static format-check lint imports types budgets \
-	format train bench wheel clean
+	sanitize format train bench wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -55,7 +55,8 @@ format-check: setup-check
 lint: setup-check
 	@.venv/bin/ruff check
 	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
-	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator tools/training
+	@$(CPPCHECK) --std=c++17 -I tools -I tools/emulator/src -I firmware/include $(wildcard tools/*/include:%=-I %) \
+		tools/c_api tools/emulator tools/simulator tools/rollout_kernel
 	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV) -e board_test
 
 imports: setup-check ## check which room may import from which
@@ -68,6 +69,9 @@ budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware wi
 	@$(PIO) run -s -e $(ENV)
 	@$(TILENCA) export --check
 	@$(TOOL) firmware.budgets $(ELF)
+
+sanitize: setup-test ## run tests of the C++ libraries with sanitizers for memory and undefined behaviour
+	@sh tools/c_api/sanitize.sh
 
 format: setup-check ## format all Python and C++
 	@.venv/bin/ruff format
@@ -91,5 +95,5 @@ wheel: setup-test ## build the source archive and the wheel into dist/, with the
 	@$(TOOL) release.wheel
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio dist build/emulator build/simulator build/training build/strict build/models build/wheel
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/models build/wheel
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

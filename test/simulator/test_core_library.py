@@ -1,14 +1,11 @@
 """The firmware's core on the host against the arithmetic of docs/PROTOCOL.md, written out in numpy."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from firmware.synthetic_models import network, random_network, uniform_network
 from support.reference_network import reference
-from tilenca.base.errors import BuildError
 from tilenca.model.file import Dimensions, Model
 from tilenca.simulator import core_library
 
@@ -154,16 +151,3 @@ def test_arrays_that_do_not_fit_the_model_are_refused(
     model = random_network(Dimensions(4, 6, 6), 30)
     with pytest.raises(ValueError, match="need"):
         core_library.update_cells(model, states, inputs)
-
-
-@pytest.mark.parametrize("content", [None, b"not a library"])
-def test_a_missing_or_damaged_library_names_the_remedy(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, content: bytes | None
-) -> None:
-    library = tmp_path / "libtilenca_core.so"
-    if content is not None:
-        library.write_bytes(content)
-    monkeypatch.setattr(core_library, "LIBRARY", library)
-    model = random_network(Dimensions(4, 6, 6), 30)
-    with pytest.raises(BuildError, match=f"{library}.*make setup"):
-        core_library.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8))

@@ -3,45 +3,15 @@
 `make setup` builds the library. What it computes is said in plain PyTorch by `rollout.live_by_autograd`.
 """
 
-import ctypes
-from functools import cache
-from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
 
-from tilenca.base import paths
-from tilenca.base.errors import BuildError
+from tilenca.base import native_library
+from tilenca.base.native_library import Library
 
-LIBRARY = paths.BUILD / "training" / "libtilenca_life.so"
-PADDING = 16  # twin of kPadding in tools/training/lanes.h
-
-
-class _CNet(ctypes.Structure):
-    """`Net` of tools/training/life.h."""
-
-    _fields_ = (
-        *((name, ctypes.c_int32) for name in ("channels", "hidden1", "hidden2", "rounded")),
-        ("limit", ctypes.c_float),
-        *((name, ctypes.c_void_p) for name in ("w1", "b1", "w2", "b2", "w3", "b3")),
-    )
-
-
-class _CLife(ctypes.Structure):
-    """`Life`, the same."""
-
-    _fields_ = (
-        ("cells", ctypes.c_int32),
-        ("rounds", ctypes.c_int32),
-        *((name, ctypes.c_void_p) for name in ("counts", "who", "reads", "arrives")),
-    )
-
-
-class _CTape(ctypes.Structure):
-    """`Tape`, the same."""
-
-    _fields_ = tuple((name, ctypes.c_void_p) for name in ("seen", "hidden1", "hidden2", "after"))
+PADDING = 16  # TILENCA_ROLLOUT_PADDING of rollout.h
 
 
 class Tape(NamedTuple):
@@ -58,22 +28,13 @@ def make_tape(updates: int, *widths: int) -> Tape:
     return Tape(*(torch.empty(updates, -(-width // PADDING) * PADDING)[:, :width] for width in widths))
 
 
-@cache
-def library(path: Path = LIBRARY) -> ctypes.CDLL:
+def library() -> Library:
     """The compiled library.
 
     Raises:
         BuildError: it is not built, or not usable; the message says what to do.
     """
-    if not path.is_file():
-        raise BuildError(f"{path}: not built yet; run: make setup-train")
-    try:
-        found = ctypes.CDLL(str(path))
-        found.tilenca_life_forward.restype = found.tilenca_life_backward.restype = None
-        found.tilenca_life_kind.restype = ctypes.c_char_p
-    except (OSError, AttributeError) as error:
-        raise BuildError(f"{path}: not usable ({error}); remove it and run: make setup-train") from error
-    return found
+    return native_library.load("rollout")
 
 
 class Life:
@@ -101,36 +62,36 @@ class Life:
     ) -> None:
         self._alive = [tensor.contiguous() for tensor in (*weights, counts, who, reads, arrives)]
         w1, _, w2, _, w3, _ = weights
-        pointers = [tensor.data_ptr() for tensor in self._alive]
+        kinds = (*["float"] * len(weights), "int64_t", "int32_t", "int32_t", "uint8_t")
+        pointers = [_pointer(tensor, kind) for tensor, kind in zip(self._alive, kinds, strict=True)]
         self.widths = (w1.shape[1], len(w1), len(w2), len(w3))
+        sizes = (len(w3), len(w1), len(w2), limit is not None)
         infinite = float("inf") if limit is None else limit
-        self._net = _CNet(len(w3), len(w1), len(w2), limit is not None, infinite, *pointers[:6])
-        self._life = _CLife(cells, len(counts), *pointers[6:])
+        new = library().ffi.new
+        self._network = new("tilenca_rollout_network*", (*sizes, infinite, *pointers[:6]))
+        self._schedule = new("tilenca_rollout_schedule*", (cells, len(counts), *pointers[6:]))
         self.updates = len(who)
 
     def forward(self, state: Tensor) -> Tape:
         """Lives; `state` (N, C) float32 is changed in place."""
         tape = make_tape(self.updates, *self.widths)
-        library().tilenca_life_forward(
-            ctypes.byref(self._net),
-            ctypes.byref(self._life),
-            ctypes.c_void_p(state.data_ptr()),
-            ctypes.byref(_pointers(tape)),
-        )
+        self._run("rollout_forward", state, tape)
         return tape
 
     def backward(self, d_state: Tensor, tape: Tape) -> Tape:
         """Gradients of the sums of every layer; `d_state` (N, C) float32 is changed in place."""
         gradients = make_tape(self.updates, 0, *self.widths[1:])
-        library().tilenca_life_backward(
-            ctypes.byref(self._net),
-            ctypes.byref(self._life),
-            ctypes.c_void_p(d_state.data_ptr()),
-            ctypes.byref(_pointers(tape)),
-            ctypes.byref(_pointers(gradients)),
-        )
+        self._run("rollout_backward", d_state, tape, gradients)
         return gradients
 
+    def _run(self, function: str, state: Tensor, *tapes: Tape) -> None:
+        places = [
+            library().ffi.new("tilenca_rollout_tape*", [_pointer(tensor, "float") for tensor in tape])
+            for tape in tapes
+        ]
+        library().call(function, self._network, self._schedule, _pointer(state, "float"), *places)
 
-def _pointers(tape: Tape) -> _CTape:
-    return _CTape(*(tensor.data_ptr() for tensor in tape))
+
+def _pointer(tensor: Tensor, kind: str) -> Any:
+    """Where a tensor's elements begin; the caller keeps it alive."""
+    return library().ffi.cast(f"{kind}*", tensor.data_ptr())
