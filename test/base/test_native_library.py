@@ -1,5 +1,6 @@
 """Libraries that are missing, damaged, foreign or stale are said to be, in one line that names the remedy."""
 
+import importlib.resources
 import os
 import re
 import subprocess
@@ -157,7 +158,8 @@ def test_a_command_ends_in_one_line_and_status_4(tmp_path: Path) -> None:
 
 
 def test_what_is_for_the_preprocessor_is_left_out() -> None:
-    header = '#ifndef A\n#include "b.h"\n#ifdef __cplusplus\nextern "C" {\n#endif\nTILENCA_API int f(void);\n#endif\n'
+    for_cpp = '#ifdef __cplusplus\nextern "C" {\n#endif\n'
+    header = f'#ifndef A\n#include "b.h"\n{for_cpp}TILENCA_API int f(void);\n#endif\n'
     assert declarations(header) == "int f(void);\n"
 
 
@@ -165,7 +167,7 @@ def test_what_is_for_the_preprocessor_is_left_out() -> None:
 def test_an_installed_library_comes_before_the_checkout_s(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(native_library.importlib.resources, "files", lambda package: tmp_path)
+    monkeypatch.setattr(importlib.resources, "files", lambda package: tmp_path)
     assert find(name).library.parent.name == "release"
     (tmp_path / "lib").mkdir()
     library = tmp_path / "lib" / f"libtilenca_{name}.so"

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.avr import hex_record
 
+from support.avr import hex_record
 from tilenca.base import native_library
 
 TILES = 2

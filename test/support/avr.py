@@ -44,7 +44,7 @@ def hex_record(kind: int, address: int, data: bytes) -> str:
 
 
 def build_target(name: str) -> None:
-    """Brings a target of the C++ release build up to date; processes that test side by side wait for each other."""
+    """Brings a target of the C++ release build up to date; tests in other processes wait meanwhile."""
     build = ROOT / "build" / "release"
     with (build / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -52,7 +52,7 @@ def build_target(name: str) -> None:
 
 
 def compile_differential(directory: Path) -> Path:
-    """The program that runs our core and libsimavr side by side. It looks inside, where the library does not let it."""
+    """The program that runs our core and libsimavr side by side, and looks inside both."""
     build_target("emulator_inside")
     program, source = directory / "differential", ROOT / "test" / "emulator" / "differential.cpp"
     search = ("-I", ROOT / "tools" / "emulator" / "src", "-I", ROOT / "firmware" / "include")

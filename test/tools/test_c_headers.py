@@ -1,4 +1,4 @@
-"""Each library from plain C: its header compiles as C99 and as C++, alone, and a small program does real work."""
+"""The libraries from plain C: their headers compile as C99 and C++, alone, and small programs work."""
 
 from pathlib import Path
 

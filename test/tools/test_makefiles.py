@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from setup import native
+from support.avr import build_target
 from tilenca.base import paths
 
 PIO = Path(sys.executable).with_name("pio")
@@ -44,6 +45,8 @@ def test_a_clone_may_lie_in_a_folder_with_a_blank_in_its_name(
 
 
 def test_what_is_up_to_date_is_not_built_again() -> None:
+    build_target("tilenca_emulator")
+    build_target("tilenca_simulator")
     build = paths.BUILD / "release"
     libraries = sorted(build.glob("libtilenca_*.so"))
     before = [library.stat().st_mtime_ns for library in libraries]

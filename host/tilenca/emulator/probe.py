@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tilenca.emulator.library import call, new
 from tilenca.base.errors import UsageError
+from tilenca.emulator.library import call, new
 
 CHUNK = 4096
 # A cycle of 16 MHz is 62.5 ns.

@@ -2,10 +2,10 @@
 
 from typing import Any, Protocol
 
+from tilenca.base.errors import UsageError
 from tilenca.emulator.library import call, new, numbers, text
 from tilenca.emulator.probe import PinProbe, WireTap, pin_port
 from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
-from tilenca.base.errors import UsageError
 
 EEPROM_BYTES = 4096
 RECEIVE_CHUNK = 4096

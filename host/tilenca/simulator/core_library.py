@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base import native_library
-from tilenca.model.file import TAPS, Model
 from tilenca.base.native_library import Library
+from tilenca.model.file import TAPS, Model
 
 WIDEST = 0  # as many cells side by side as the processor can
+
+LIBRARY = native_library.find("simulator").library
 
 
 def library() -> Library:
