@@ -172,3 +172,16 @@ def test_an_installed_package_has_its_libraries_inside(
     library = tmp_path / "lib" / f"libtilenca_{name}.so"
     assert find(name) == Files(library, tmp_path / "lib" / "include" / "tilenca" / f"{name}.h")
     assert refused(name, library) == f"{library}: missing; run: pip install --force-reinstall tilenca"
+
+
+def test_threads_that_load_at_the_same_time_get_the_same_library() -> None:
+    program = (
+        "import sys\n"
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "from tilenca.base.native_library import load\n"
+        "sys.setswitchinterval(1e-6)\n"
+        "with ThreadPoolExecutor(8) as pool: found = list(pool.map(load, ['simulator'] * 8))\n"
+        "print(len({id(library.ffi) for library in found}))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"

@@ -5,6 +5,7 @@ same as last time, nothing is built; if it is not, only what changed is compiled
 """
 
 import argparse
+import fcntl
 import hashlib
 import os
 import shutil
@@ -91,12 +92,19 @@ def repair(wheel: Path, out: Path) -> Path:
     return product
 
 
-def make(out: Path) -> list[Path]:
-    """Builds what is not there yet; returns the archive and the wheel.
+def make(out: Path = DIST) -> list[Path]:
+    """Builds what is not there yet; returns the archive and the wheel. Only one process at a time does.
 
     Raises:
         WheelError: see `run` and `repair`.
     """
+    WORK.mkdir(parents=True, exist_ok=True)
+    with (WORK / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        return _make(out)
+
+
+def _make(out: Path) -> list[Path]:
     archive = build("sdist", ROOT, WORK / "sdist")
     key = hashlib.sha256(archive.read_bytes()).hexdigest()
     stamp = WORK / "made"

@@ -10,8 +10,8 @@ threads run while a function of a library does.
 import os
 import re
 import sys
+import threading
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -89,15 +89,22 @@ def find(name: str) -> Files:
     )
 
 
-@cache
+_loaded: dict[str, Library] = {}
+_loading = threading.Lock()
+
+
 def load(name: str) -> Library:
-    """The library of that name.
+    """The library of that name; the same for all threads, since C values of two loads do not mix.
 
     Raises:
         BuildError: it is missing, damaged, for another machine, or not of this version of the header; the
             message names the file and what to run.
     """
-    return load_files(name, find(name))
+    found = _loaded.get(name)
+    if found is None:
+        with _loading:
+            found = _loaded.get(name) or _loaded.setdefault(name, load_files(name, find(name)))
+    return found
 
 
 def load_files(name: str, files: Files) -> Library:
