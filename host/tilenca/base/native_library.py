@@ -39,7 +39,6 @@ class Files:
     header: Path
 
 
-@dataclass(frozen=True)
 class Library:
     """A library that is loaded.
 
@@ -49,9 +48,9 @@ class Library:
         name: a key of `FOLDERS`.
     """
 
-    ffi: Any
-    lib: Any
-    name: str
+    def __init__(self, ffi: Any, lib: Any, name: str) -> None:
+        self.ffi, self.lib, self.name = ffi, lib, name
+        self._functions: dict[str, Any] = {}  # those called so far
 
     def last_error(self) -> str:
         """Why the last function that failed in this thread did."""
@@ -64,15 +63,16 @@ class Library:
         Raises:
             UsageError: it failed, that is, returned null or a negative number; with the library's own words.
         """
+        known = self._functions.get(function)
+        if known is None:
+            known = self._functions[function] = getattr(self.lib, f"tilenca_{function}")
         try:
-            result = getattr(self.lib, f"tilenca_{function}")(*arguments)
+            result = known(*arguments)
         except OverflowError as error:
             raise UsageError(f"{function.replace('_', ' ')}: {error}") from error
-        if (
-            result == self.ffi.NULL
-            if isinstance(result, self.ffi.CData)
-            else result is not None and result < 0
-        ):
+        kind = type(result)
+        failed = result < 0 if kind is int or kind is float else result is not None and not result
+        if failed:
             raise UsageError(self.last_error())
         return result
 
