@@ -27,6 +27,8 @@ REMEDIES = {"emulator": "run: make setup", "simulator": "run: make setup", "roll
 # Another folder of libraries than the release build's, such as that of the sanitizers (CONTRIBUTING.md).
 OTHER_FOLDER = "TILENCA_LIBRARIES"
 
+NO_MEMORY = "out of memory"  # as c_api/guard.h says it
+
 ELF_MAGIC = b"\x7fELF"
 ELF_HEADER_BYTES = 64
 
@@ -61,7 +63,9 @@ class Library:
         """Calls `tilenca_FUNCTION`; returns what it returns.
 
         Raises:
-            UsageError: it failed, that is, returned null or a negative number; with the library's own words.
+            MemoryError: there is not enough.
+            UsageError: it returned null or a negative number for another reason; with the library's own
+                words.
         """
         known = self._functions.get(function)
         if known is None:
@@ -73,7 +77,8 @@ class Library:
         kind = type(result)
         failed = result < 0 if kind is int or kind is float else result is not None and not result
         if failed:
-            raise UsageError(self.last_error())
+            words = self.last_error()
+            raise MemoryError(words) if words == NO_MEMORY else UsageError(words)
         return result
 
 
