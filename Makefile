@@ -55,7 +55,7 @@ format-check: setup-check
 lint: setup-check
 	@.venv/bin/ruff check
 	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
-	@$(CPPCHECK) --std=c++17 -I tools -I tools/emulator/src -I firmware/include $(wildcard tools/*/include:%=-I %) \
+	@$(CPPCHECK) --std=c++17 -I tools -I tools/emulator/src -I firmware/include $(patsubst %,-I %,$(wildcard tools/*/include)) \
 		tools/c_api tools/emulator tools/simulator tools/rollout_kernel
 	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV) -e board_test
 

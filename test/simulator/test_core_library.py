@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from firmware.synthetic_models import network, random_network, uniform_network
 from support.reference_network import reference
 from tilenca.model.file import Dimensions, Model
-from tilenca.simulator import core_library
+from tilenca.simulator import core_library, rollout_library
 
 SEED_STATE = 8192
 
@@ -52,6 +52,16 @@ def test_nothing_wraps_at_the_extremes(weight: int, bias: int, message: int, sta
     np.testing.assert_array_equal(
         core_library.update_cells(model, states, inputs), reference(model, states, inputs)
     )
+
+
+def test_constants_are_those_of_the_library() -> None:
+    lib = core_library.library().lib
+    assert (lib.TILENCA_TICKS, lib.TILENCA_UNITS_PER_TICK * lib.TILENCA_TICKS) == (
+        rollout_library.TICKS_PER_STEP,
+        rollout_library.UNITS_PER_STEP,
+    )
+    faults = [getattr(lib, f"TILENCA_FAULT_{name.upper()}") for name in rollout_library.FAULTS]
+    assert faults == list(range(len(rollout_library.FAULTS)))
 
 
 WIDTHS = [16, 8, 4]

@@ -39,11 +39,12 @@ void check_arrays(const tilenca_setup& setup) {
 
 void check_run(const tilenca_setup& setup, int run) {
     const int32_t begin = setup.starts[run], end = setup.starts[run + 1];
-    for (int64_t i = int64_t{begin} * kSides; i < int64_t{end} * kSides; ++i) {
-        if (const int32_t other = setup.neighbours[i];
-            other != setup.cells && (other < begin || other >= end)) {
-            throw Refusal("cell " + std::to_string(i / kSides) + " has a neighbour " + std::to_string(other) +
-                          ", which is not of its run");
+    const int32_t* const beyond = setup.neighbours + static_cast<size_t>(end) * kSides;
+    for (const int32_t* other = setup.neighbours + static_cast<size_t>(begin) * kSides; other != beyond;
+         ++other) {
+        if (*other != setup.cells && (*other < begin || *other >= end)) {
+            throw Refusal("cell " + std::to_string((other - setup.neighbours) / kSides) +
+                          " has a neighbour " + std::to_string(*other) + ", which is not of its run");
         }
     }
     if (setup.fault != TILENCA_FAULT_NONE && setup.faulty[run] != -1 &&

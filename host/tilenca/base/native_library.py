@@ -27,6 +27,8 @@ REMEDIES = {"emulator": "run: make setup", "simulator": "run: make setup", "roll
 # Another folder of libraries than the release build's, such as that of the sanitizers (CONTRIBUTING.md).
 OTHER_FOLDER = "TILENCA_LIBRARIES"
 
+NO_MEMORY = "out of memory"  # as c_api/guard.h says it
+
 ELF_MAGIC = b"\x7fELF"
 ELF_HEADER_BYTES = 64
 
@@ -39,7 +41,6 @@ class Files:
     header: Path
 
 
-@dataclass(frozen=True)
 class Library:
     """A library that is loaded.
 
@@ -49,9 +50,9 @@ class Library:
         name: a key of `FOLDERS`.
     """
 
-    ffi: Any
-    lib: Any
-    name: str
+    def __init__(self, ffi: Any, lib: Any, name: str) -> None:
+        self.ffi, self.lib, self.name = ffi, lib, name
+        self._functions: dict[str, Any] = {}  # those called so far
 
     def last_error(self) -> str:
         """Why the last function that failed in this thread did."""
@@ -62,18 +63,22 @@ class Library:
         """Calls `tilenca_FUNCTION`; returns what it returns.
 
         Raises:
-            UsageError: it failed, that is, returned null or a negative number; with the library's own words.
+            MemoryError: there is not enough.
+            UsageError: it returned null or a negative number for another reason; with the library's own
+                words.
         """
+        known = self._functions.get(function)
+        if known is None:
+            known = self._functions[function] = getattr(self.lib, f"tilenca_{function}")
         try:
-            result = getattr(self.lib, f"tilenca_{function}")(*arguments)
+            result = known(*arguments)
         except OverflowError as error:
             raise UsageError(f"{function.replace('_', ' ')}: {error}") from error
-        if (
-            result == self.ffi.NULL
-            if isinstance(result, self.ffi.CData)
-            else result is not None and result < 0
-        ):
-            raise UsageError(self.last_error())
+        kind = type(result)
+        failed = result < 0 if kind is int or kind is float else result is not None and not result
+        if failed:
+            words = self.last_error()
+            raise MemoryError(words) if words == NO_MEMORY else UsageError(words)
         return result
 
 

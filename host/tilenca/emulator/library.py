@@ -1,5 +1,6 @@
 """The compiled emulator: tools/emulator/include/tilenca/emulator.h in Python."""
 
+from functools import cache
 from typing import Any
 
 from tilenca.base import native_library
@@ -8,6 +9,7 @@ from tilenca.base.native_library import Library
 LIBRARY = native_library.find("emulator").library
 
 
+@cache
 def library() -> Library:
     """The compiled emulator.
 
@@ -23,20 +25,20 @@ def call(function: str, *arguments: Any) -> Any:
     Raises:
         UsageError: it failed; with the library's own words.
     """
-    return native_library.load("emulator").call(function, *arguments)
+    return library().call(function, *arguments)
 
 
 def new(kind: str, *initial: Any) -> Any:
     """Memory for C values, such as `new("uint8_t[]", 10)`: zeros, or what is given."""
-    return native_library.load("emulator").ffi.new(kind, *initial)
+    return library().ffi.new(kind, *initial)
 
 
 def text(pointer: Any) -> str:
     """The text that a C string holds."""
-    return str(native_library.load("emulator").ffi.string(pointer).decode(errors="replace"))
+    return str(library().ffi.string(pointer).decode(errors="replace"))
 
 
 def numbers(array: Any, count: int) -> list[Any]:
     """The first elements of a C array."""
-    found: list[Any] = native_library.load("emulator").ffi.unpack(array, count) if count else []
+    found: list[Any] = library().ffi.unpack(array, count) if count else []
     return found

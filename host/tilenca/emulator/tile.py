@@ -3,7 +3,7 @@
 from typing import Any, Protocol
 
 from tilenca.base.errors import UsageError
-from tilenca.emulator.library import call, new, numbers, text
+from tilenca.emulator.library import call, library, new, numbers, text
 from tilenca.emulator.probe import PinProbe, WireTap, pin_port
 from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
 
@@ -62,39 +62,39 @@ class EmulatedTile:
     @property
     def segments(self) -> int:
         """The lit segments: bit 0 = a ... bit 6 = g, bit 7 = dp, as in `tilenca.shapes.glyphs`."""
-        return int(self._call("segments"))
+        return int(self._call("tile_segments"))
 
     @property
     def rgb(self) -> tuple[int, int, int]:
         """Duty of the red, green and blue LED now, 0..255 each, as the pins give it."""
         duty = new("uint8_t[3]")
-        self._call("rgb", duty)
+        self._call("tile_rgb", duty)
         return duty[0], duty[1], duty[2]
 
     @property
     def leds(self) -> tuple[bool, bool, bool, bool]:
         """The four debug LEDs, in the order N E S W."""
-        mask = self._call("leds")
+        mask = self._call("tile_leds")
         return bool(mask & 1), bool(mask & 2), bool(mask & 4), bool(mask & 8)
 
     @property
     def display_changes(self) -> list[DisplayChange]:
         """Everything the display has shown, in order; it is dark until the first change."""
-        count = self._call("display_changes", 0, new("double[]", 0), new("uint8_t[]", 0), 0)
+        count = self._call("tile_display_changes", 0, new("double[]", 0), new("uint8_t[]", 0), 0)
         times, segments = new("double[]", count), new("uint8_t[]", count)
-        self._call("display_changes", 0, times, segments, count)
+        self._call("tile_display_changes", 0, times, segments, count)
         changes = zip(numbers(times, count), numbers(segments, count), strict=True)
         return [DisplayChange(time, lit) for time, lit in changes]
 
     @property
     def fault(self) -> str:
         """What stopped the tile (tile, address, function, fact), or "" while it runs."""
-        return text(self._call("fault"))
+        return text(self._call("tile_fault"))
 
     @property
     def warnings(self) -> list[str]:
         """Functions of the chip that the program asked for and that are not modelled, each once."""
-        return [text(self._call("warning", index)) for index in range(self._call("warnings"))]
+        return [text(self._call("tile_warning", index)) for index in range(self._call("tile_warnings"))]
 
     @property
     def cycles(self) -> tuple[int, int]:
@@ -104,7 +104,7 @@ class EmulatedTile:
 
     def _cycles(self) -> tuple[int, int, int]:
         cycles = new("tilenca_cycles*")
-        self._call("cycles", cycles)
+        self._call("tile_cycles", cycles)
         return cycles.total, cycles.asleep, cycles.off
 
     @property
@@ -117,17 +117,17 @@ class EmulatedTile:
     def stack(self) -> Stack:
         """Where the stack stands, how far down it has been, and where the data end."""
         stack = new("tilenca_stack*")
-        self._call("stack", stack)
+        self._call("tile_stack", stack)
         return Stack(stack.pointer, stack.deepest, stack.floor)
 
     @property
     def pc(self) -> int:
         """Byte address in flash of the next instruction."""
-        return int(self._call("pc"))
+        return int(self._call("tile_pc"))
 
     @pc.setter
     def pc(self, address: int) -> None:
-        self._call("set_pc", address)
+        self._call("tile_set_pc", address)
 
     @property
     def function(self) -> str:
@@ -136,32 +136,32 @@ class EmulatedTile:
 
     def press_button(self, pressed: bool = True) -> None:
         """Holds the push button down, or lets it go."""
-        self._call("press_button", pressed)
+        self._call("tile_press_button", pressed)
 
     def reset(self, cause: ResetCause = ResetCause.EXTERNAL) -> None:
         """Resets the chip from outside, as opening its USB serial port does, or a sagging supply."""
-        self._call("reset", cause)
+        self._call("tile_reset", cause)
 
     @property
     def powered(self) -> bool:
         """Whether it has power. Switched on again it starts as new, but for flash, EEPROM and fuses."""
-        return bool(self._call("is_powered"))
+        return bool(self._call("tile_is_powered"))
 
     @powered.setter
     def powered(self, on: bool) -> None:
-        self._call("set_power", on)
+        self._call("tile_set_power", on)
 
     def set_drift(self, ppm_per_s: float) -> None:
         """From now on the clock error grows by so many ppm in each second, in steps of 1/15 s."""
-        self._call("set_drift", ppm_per_s)
+        self._call("tile_set_drift", ppm_per_s)
 
     def set_fuses(self, low: int = 0xFF, high: int = 0xD9, extended: int = 0xFD, lock: int = 0xFF) -> None:
         """Sets fuse and lock bytes as a programmer does; the chip starts anew."""
-        self._call("set_fuses", low, high, extended, lock)
+        self._call("tile_set_fuses", low, high, extended, lock)
 
     def write_serial(self, data: bytes) -> None:
         """Queues bytes for the tile's USB serial; they arrive while the array runs, at the tile's speed."""
-        self._call("send", data, len(data))
+        self._call("tile_send", data, len(data))
 
     def read_serial(self) -> bytes:
         """Everything the tile has sent on its USB serial since the last read."""
@@ -172,7 +172,7 @@ class EmulatedTile:
         received: list[tuple[float, int]] = []
         room = RECEIVE_CHUNK
         values, times = new("uint8_t[]", room), new("double[]", room)
-        while count := self._call("receive", values, times, room):
+        while count := self._call("tile_receive", values, times, room):
             received.extend(zip(numbers(times, count), numbers(values, count), strict=True))
         return received
 
@@ -182,55 +182,55 @@ class EmulatedTile:
         Raises:
             UsageError: the range ends beyond the memory (this holds for all four readers and writers).
         """
-        return self._read("read_eeprom", address, count)
+        return self._read("tile_read_eeprom", address, count)
 
     def write_eeprom(self, address: int, data: bytes) -> None:
         """Puts bytes into the EEPROM at once, as a programmer does before the tile is switched on."""
-        self._call("write_eeprom", address, data, len(data))
+        self._call("tile_write_eeprom", address, data, len(data))
 
     def read_memory(self, address: int, count: int) -> bytes:
         """Bytes of the data space as stored: registers from 0, I/O from 0x20, SRAM from 0x200."""
-        return self._read("read_memory", address, count)
+        return self._read("tile_read_memory", address, count)
 
     def read_flash(self, address: int, count: int) -> bytes:
         """Bytes of the program memory."""
-        return self._read("read_flash", address, count)
+        return self._read("tile_read_flash", address, count)
 
     def pin(self, port: str, bit: int) -> bool:
         """The level of a pin, such as `pin("K", 7)`."""
-        return bool(self._call("pin", pin_port(port), bit))
+        return bool(self._call("tile_pin", pin_port(port), bit))
 
     def duty(self, port: str, bit: int) -> float:
         """Share of time (0..1) an output is high under its timer's PWM; 0 for an input."""
-        return float(self._call("duty", pin_port(port), bit))
+        return float(self._call("tile_duty", pin_port(port), bit))
 
     def hold_pin(self, port: str, bit: int, level: bool) -> None:
         """Drives an input from outside; an input that nobody drives reads high."""
-        self._call("hold_pin", pin_port(port), bit, level)
+        self._call("tile_hold_pin", pin_port(port), bit, level)
 
     def set_analog(self, channel: int, value: int) -> None:
         """What analog input A0 to A15 converts to, 0..1023."""
-        self._call("set_analog", channel, value)
+        self._call("tile_set_analog", channel, value)
 
     def set_adc_noise(self, deviation: float, seed: int = 0) -> None:
         """Conversions are off by a normal deviate, in units of the result's lowest bit."""
-        self._call("set_adc_noise", deviation, (seed * MOST_TILES + self.index) % 2**64)
+        self._call("tile_set_adc_noise", deviation, (seed * MOST_TILES + self.index) % 2**64)
 
     def set_comparator(self, ain0: int, ain1: int) -> None:
         """The voltages at AIN0 (PE2) and AIN1 (PE3), in 1024ths of the supply."""
-        self._call("set_comparator", ain0, ain1)
+        self._call("tile_set_comparator", ain0, ain1)
 
     def set_spi_loopback(self, on: bool = True) -> None:
         """Joins MOSI and MISO; without it, MISO reads as the pin PB3 does: high, if nobody holds it."""
-        self._call("set_spi_loopback", on)
+        self._call("tile_set_spi_loopback", on)
 
     def push_edge(self, port: str, bit: int, cycle: int, level: bool) -> None:
         """Lets an input change at a future cycle of the tile's own clock; not for pins that a link drives."""
-        self._call("push_edge", pin_port(port), bit, cycle, level)
+        self._call("tile_push_edge", pin_port(port), bit, cycle, level)
 
     def write_memory(self, address: int, data: bytes) -> None:
         """Puts bytes into the data space as stored; peripherals do not notice."""
-        self._call("write_memory", address, data, len(data))
+        self._call("tile_write_memory", address, data, len(data))
 
     def variable(self, name: str) -> bytes:
         """The bytes of a global variable, by its name in the ELF file; low byte first.
@@ -250,14 +250,14 @@ class EmulatedTile:
     def mark(self, place: str | int, on: bool = True) -> None:
         """Notes every time a function, or the instruction at a byte address of flash, begins."""
         address = self._array.code_address(place)
-        self._call("set_mark", address, on)
+        self._call("tile_set_mark", address, on)
 
     def marks(self) -> list[Mark]:
         """The notes since the last call. Cycles between two marks are the difference of theirs."""
         room = RECEIVE_CHUNK
         places, cycles = new("uint32_t[]", room), new("uint64_t[]", room)
         found: list[Mark] = []
-        while count := self._call("marks", places, cycles, room):
+        while count := self._call("tile_marks", places, cycles, room):
             found += [Mark(self._array.function_at(places[i]), places[i], cycles[i]) for i in range(count)]
         return found
 
@@ -292,16 +292,16 @@ class EmulatedTile:
     @property
     def halted(self) -> bool:
         """Whether it stands before a breakpoint; `Array.run` returns early while any tile does."""
-        return bool(self._call("is_halted"))
+        return bool(self._call("tile_is_halted"))
 
     def set_breakpoint(self, place: str | int, on: bool = True) -> None:
         """Halts before a function, or the instruction at a byte address of flash."""
         address = self._array.code_address(place)
-        self._call("set_breakpoint", address, on)
+        self._call("tile_set_breakpoint", address, on)
 
     def halt(self) -> None:
         """Halts it where it stands."""
-        self._call("halt")
+        self._call("tile_halt")
 
     def step(self) -> bool:
         """Executes one instruction, or enters one interrupt; the tile is halted afterwards.
@@ -311,20 +311,20 @@ class EmulatedTile:
         Returns:
             False if it sleeps on after a second, or another tile has halted first.
         """
-        return bool(self._call("step"))
+        return bool(self._call("tile_step"))
 
     def resume(self) -> None:
         """Lets a halted tile go on with the next `Array.run`."""
-        self._call("resume")
+        self._call("tile_resume")
 
     @property
     def status(self) -> int:
         """SREG."""
-        return int(self._call("status"))
+        return int(self._call("tile_status"))
 
     @status.setter
     def status(self, value: int) -> None:
-        self._call("set_status", value)
+        self._call("tile_set_status", value)
 
     def _read(self, what: str, address: int, count: int) -> bytes:
         if count < 0:
@@ -334,4 +334,4 @@ class EmulatedTile:
         return bytes(buffer)
 
     def _call(self, function: str, *arguments: Any) -> Any:
-        return call(f"tile_{function}", self._array.handle, self.index, *arguments)
+        return library().call(function, self._array.handle, self.index, *arguments)

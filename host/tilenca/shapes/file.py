@@ -8,13 +8,13 @@ class (`tilenca.shapes.sizes`).
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_SHAPES
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
 from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
@@ -59,7 +59,7 @@ class Shape:
     def neighbours(self) -> list[list[int]]:
         """For every tile the indices into `cells` of its N, E, S, W neighbour, -1 for none."""
         index = {cell: number for number, cell in enumerate(self.cells)}
-        return [[index.get((row + dr, col + dc), -1) for dr, dc in STEPS] for row, col in self.cells]
+        return [[index.get((row + dr, col + dc), -1) for dr, dc in OFFSETS] for row, col in self.cells]
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,20 @@ class Task:
         Raises:
             UsageError: the file has none; the message lists what it has.
         """
-        for shape in self.shapes:
-            if shape.name == name:
-                return shape
-        names = " ".join(shape.name for shape in self.shapes)
-        raise UsageError(f"{self.path}: no shape '{name}'; it has: {names}")
+        return self.shapes[find_shape(self.shapes, name, self.path)]
+
+
+def find_shape(shapes: Sequence[Shape], name: str, path: Path) -> int:
+    """The index of the shape called `name`.
+
+    Raises:
+        UsageError: there is none; the message names the file and lists what it has.
+    """
+    for number, shape in enumerate(shapes):
+        if shape.name == name:
+            return number
+    names = " ".join(shape.name for shape in shapes)
+    raise UsageError(f"{path}: no shape '{name}'; it has: {names}")
 
 
 def load_task(path: Path, max_classes: int | None = None) -> Task:

@@ -1,7 +1,7 @@
-"""Python face of the compiled tissue (tools/simulator): who updates when, hears what, and is there at all.
+"""Compiled rollouts of a batch of grids (tools/simulator): the schedule, the messages and the updates.
 
-`Tissue` does it all for the firmware's core. `Plan` only says what happens, round by round, to those who
-compute states of another kind; both follow the same schedule, number by number.
+`CompiledRollout` computes all of it with the firmware's core. `TickSchedule` only gives the events of each
+tick, for engines that compute other states; both follow the same schedule, number by number.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from tilenca.model.file import Model
 from tilenca.simulator.core_library import library, model_struct, pointer
 
-TICKS = 20  # TILENCA_TICKS of simulator.h: the resolution of a step on clocks
-UNITS_PER_STEP = TICKS << 16  # TILENCA_UNITS_PER_TICK
+TICKS_PER_STEP = 20  # TILENCA_TICKS of simulator.h: the resolution of a step on clocks
+UNITS_PER_STEP = TICKS_PER_STEP << 16  # TILENCA_UNITS_PER_TICK
 LOSS_UNITS = 1 << 32
 DARK = -1
 FAULTS = ("none", "dead", "stuck", "away")  # TILENCA_FAULT_... in their order
@@ -25,14 +25,14 @@ Cells = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Setup:
-    """R runs of N cells in all, and what they have to live with; times on clocks are in units of a step.
+    """R runs of N cells in all, and their conditions; times on clocks are in units of a step.
 
     Attributes:
         starts: (R + 1,) the first cell of each run, and N.
         neighbours: (N, 4) N, E, S, W; N for none.
-        alive: (N,) false: never there.
+        alive: (N,) false: dead from the start.
         target: (N,) the class that is right.
-        seeds: (R,) uint64, decides all chance during the run.
+        seeds: (R,) uint64, of the random generator of each run.
         loss: share of messages lost.
         zeros: whether a lost message reads as zeros; else the last one is held.
         clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None:
@@ -58,7 +58,7 @@ class Setup:
 
 
 def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
-    """Times as the schedule counts them."""
+    """Times in the units of the schedule."""
     counted: NDArray[np.int64] = np.rint(np.asarray(steps) * UNITS_PER_STEP).astype(np.int64)
     return counted
 
@@ -91,7 +91,7 @@ def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
     return library().ffi.new("tilenca_setup*", numbers | arrays), list(arrays.values())
 
 
-class Tissue:
+class CompiledRollout:
     """Runs by the firmware's core.
 
     Args:
@@ -111,10 +111,10 @@ class Tissue:
         if states.dtype != np.int16 or not states.flags.c_contiguous:
             raise ValueError(f"states are {states.dtype}, wanted: contiguous int16")
         self._runs, self._cells = len(setup.seeds), len(setup.alive)
-        given, *kept = _setup_struct(setup)
+        given, arrays = _setup_struct(setup)
         network, _weights = model_struct(model)
         cells = pointer(states, "int16_t"), pointer(shown, "int8_t")
-        self._kept = kept, cells
+        self._alive = arrays, cells  # as long as C points at them
         self._batch = library().call("grid_batch_new", network, given, *cells)
 
     def __del__(self) -> None:
@@ -122,11 +122,11 @@ class Tissue:
             library().call("grid_batch_free", self._batch)
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
-        """Lives on for as many steps as there is room for.
+        """Runs as many steps as `right` has rows.
 
         Args:
-            right: (T, R), filled with the share of tiles right after each step, of those asked.
-            shown: (T, N), filled with what each tile shows; None: not wanted.
+            right: (T, R), filled with the share of the counted tiles that are right after each step.
+            shown: (T, N), filled with the class that each tile shows; None: not wanted.
             threads: how many to use; the result does not depend on it.
         """
         for array, width in ((right, self._runs), (shown, self._cells)):
@@ -144,17 +144,17 @@ class Tissue:
 
 
 @dataclass(frozen=True)
-class Round:
-    """What happens in a round, in this order.
+class Tick:
+    """The events of a tick, in this order.
 
     Attributes:
         gone: cells that fall silent and dark.
-        born: cells that are switched on again in the seed state, and have heard nobody.
-        senders: (A,) cells whose message of now arrives.
+        born: cells that are switched on again in the seed state, without any message.
+        senders: (A,) cells whose current message arrives.
         arrives: (A, 4) bool, on which sides.
         updating: (U,) cells that update.
         absent: (U, 4) bool, the sides that they read as zeros.
-        last: whether it is the last round of a step.
+        last: whether it is the last tick of a step.
     """
 
     gone: Cells
@@ -166,11 +166,11 @@ class Round:
     last: bool
 
 
-class Plan:
+class TickSchedule:
     """The schedule of runs, without their states."""
 
     def __init__(self, setup: Setup) -> None:
-        given, self._kept = _setup_struct(setup)
+        given, self._alive = _setup_struct(setup)
         self._tick = library().ffi.new("tilenca_tick*")
         self._schedule = library().call("schedule_new", given)
 
@@ -178,13 +178,13 @@ class Plan:
         if hasattr(self, "_schedule"):
             library().call("schedule_free", self._schedule)
 
-    def next(self) -> Round:
+    def next(self) -> Tick:
         """Plans the next tick."""
         last = bool(library().call("schedule_next", self._schedule, self._tick))
         senders, arrives = _events(self._cells("deliveries", 2))
         updating, absent = _events(self._cells("updates", 2))
         gone, born = self._cells("switched_off", 1)[:, 0], self._cells("switched_on", 1)[:, 0]
-        return Round(gone, born, senders, arrives, updating, absent, last)
+        return Tick(gone, born, senders, arrives, updating, absent, last)
 
     def _cells(self, name: str, width: int) -> Cells:
         """A list of the tick as (its length, width)."""

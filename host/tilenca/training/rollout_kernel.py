@@ -1,6 +1,6 @@
-"""Training's inner loop, compiled for this machine: tools/training behind torch tensors.
+"""Training's inner loop, compiled for this machine: tools/rollout_kernel behind torch tensors.
 
-`make setup` builds the library. What it computes is said in plain PyTorch by `rollout.live_by_autograd`.
+`make setup` builds the library. `rollout.rollout_by_autograd` computes the same in plain PyTorch.
 """
 
 from typing import Any, NamedTuple
@@ -11,11 +11,9 @@ from torch import Tensor
 from tilenca.base import native_library
 from tilenca.base.native_library import Library
 
-PADDING = 16  # TILENCA_ROLLOUT_PADDING of rollout.h
-
 
 class Tape(NamedTuple):
-    """What E updates saw and did, or the gradients of it: (E, width) float32 each, rows padded."""
+    """Inputs and results of E updates, or their gradients: (E, width) float32 each, rows padded."""
 
     seen: Tensor
     hidden1: Tensor
@@ -25,7 +23,8 @@ class Tape(NamedTuple):
 
 def make_tape(updates: int, *widths: int) -> Tape:
     """An unwritten tape of `updates` rows; widths of perception, hidden layers and state."""
-    return Tape(*(torch.empty(updates, -(-width // PADDING) * PADDING)[:, :width] for width in widths))
+    block: int = library().lib.TILENCA_ROLLOUT_PADDING
+    return Tape(*(torch.empty(updates, -(-width // block) * block)[:, :width] for width in widths))
 
 
 def library() -> Library:
@@ -37,17 +36,17 @@ def library() -> Library:
     return native_library.load("rollout")
 
 
-class Life:
-    """A network and a schedule as the library wants them; keeps alive what it points to.
+class KernelRollout:
+    """A network and a schedule in the library's form; keeps the arrays alive to which it points.
 
     Args:
         weights: w1, b1, w2, b2, w3, b3 as `TileNet.weights` gives them, float32.
         limit: of states and activations in the tile's whole numbers; None: plain real numbers.
         cells: N.
-        counts: (T,) int64, updates of each round.
-        who: (E,) int32, the cell that updates.
-        reads: (E, 5) int32, rows it perceives: own, N + own as heard, 2 N for nobody's.
-        arrives: (T, N) bool, at the end of the round the neighbours hear the cell.
+        counts: (T,) int64, updates of each tick.
+        updating: (E,) int32, the cell of each update.
+        reads: (E, 5) int32, rows it perceives: own, N + own as received, 2 N for an absent neighbour.
+        arrives: (T, N) bool, at the end of the tick the neighbours receive the cell's message.
     """
 
     def __init__(
@@ -56,11 +55,11 @@ class Life:
         limit: float | None,
         cells: int,
         counts: Tensor,
-        who: Tensor,
+        updating: Tensor,
         reads: Tensor,
         arrives: Tensor,
     ) -> None:
-        self._alive = [tensor.contiguous() for tensor in (*weights, counts, who, reads, arrives)]
+        self._alive = [tensor.contiguous() for tensor in (*weights, counts, updating, reads, arrives)]
         w1, _, w2, _, w3, _ = weights
         kinds = (*["float"] * len(weights), "int64_t", "int32_t", "int32_t", "uint8_t")
         pointers = [_pointer(tensor, kind) for tensor, kind in zip(self._alive, kinds, strict=True)]
@@ -70,10 +69,10 @@ class Life:
         new = library().ffi.new
         self._network = new("tilenca_rollout_network*", (*sizes, infinite, *pointers[:6]))
         self._schedule = new("tilenca_rollout_schedule*", (cells, len(counts), *pointers[6:]))
-        self.updates = len(who)
+        self.updates = len(updating)
 
     def forward(self, state: Tensor) -> Tape:
-        """Lives; `state` (N, C) float32 is changed in place."""
+        """Runs the updates; `state` (N, C) float32 is changed in place."""
         tape = make_tape(self.updates, *self.widths)
         self._run("rollout_forward", state, tape)
         return tape
