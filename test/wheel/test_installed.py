@@ -198,8 +198,8 @@ def test_a_project_of_ones_own_goes_from_drawings_to_tiles(
     trained = document(training.run(project, "tilenca", *train))
     assert trained["model"] == "models/mine"
     about = json.loads((project / "models" / "mine" / "model.json").read_text(encoding="utf-8"))
-    assert about["made"]["commit"] == f"tilenca {__version__}"
-    assert about["made"]["shapes"] == ["shapes/mine.toml"]
+    assert about["metadata"]["commit"] == f"tilenca {__version__}"
+    assert about["metadata"]["shapes"] == ["shapes/mine.toml"]
     measure = ["evaluate", *model, *shapes, "--engine", "emulator", "--steps", "5", "--json"]
     before = training.run(project, "tilenca", *measure)
     assert before.returncode == 4  # the digits are what is there
