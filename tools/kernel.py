@@ -6,7 +6,7 @@ from pathlib import Path
 from tilenca import export, paths
 from tilenca.modelfile import Model
 
-SOURCES = ("src/core/network.cpp", "src/avr/kernel.S", "src/avr/sum.S")
+SOURCES = ("src/core/network.cpp", "src/avr/layers.cpp", "src/avr/kernel.S", "src/avr/sum.S")
 WEIGHTS = "src/model/model.cpp"
 
 

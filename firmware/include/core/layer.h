@@ -48,10 +48,6 @@ struct Layer {
         return output / kPassOutputs * static_cast<uint16_t>(kPassHead + kPassOutputs * inputs);
     }
 
-#ifdef __AVR__
-    uint16_t address_of(uint8_t output) const { return stream.address() + start_of(output); }
-#endif
-
     static constexpr uint8_t kPassHead = 1 + kPassOutputs * sizeof(int16_t);
 
   private:
