@@ -6,8 +6,8 @@
 namespace tilenca {
 namespace board {
 
-// Call it after clock_begin() and links_begin(): the clock's timer 4 and the south link's timer 1 dim some of
-// the segments and red.
+// Call it before links_begin(), whose interrupts use ports of the display. Nothing is lit before
+// clock_begin() and links_begin() have started timers 4 and 1, which dim some of the segments and red.
 void face_begin();
 
 // Bit 0 = segment a ... bit 6 = g, bit 7 = dp; brightness of 255, 0 is dark. The decimal point

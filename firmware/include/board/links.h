@@ -12,9 +12,13 @@ namespace board {
 constexpr uint32_t kLinkBaud = 38400;
 constexpr uint32_t kRowBaud = 125000;
 
+// Take all bytes of every side at least this often, or some are lost. The main loop does so every two
+// milliseconds.
+constexpr uint16_t kReadEveryUs = 5000;
+
 void links_begin();
 
-// The next byte from this side, if any. Ask every side at least every six milliseconds.
+// The next byte from this side, if any.
 bool link_read(Side side, uint8_t* byte);
 
 // Whether the line is free for the next frame.

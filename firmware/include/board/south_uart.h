@@ -19,7 +19,8 @@ constexpr uint16_t kSouthBitCycles = 420;
 // Takes timers 1 and 5 and the pin-change interrupt of port K.
 void south_begin();
 
-// The next byte received, if any. Call it at least every six milliseconds, or edges are lost.
+// The next byte received, if any. Call it until there is none at least every 6.6 ms: the ring holds 255
+// edges, and a byte such as 0x55 has one per bit, every 26 us.
 //
 // Never inlined: in a larger function its state would not find registers, at twice the cycles.
 bool south_read(uint8_t* byte) __attribute__((noinline));

@@ -178,8 +178,8 @@ void check_sides(uint32_t now_ms) {
 
 void setup() {
     board::clock_begin();
+    board::face_begin(); // before the links' interrupts use the same ports
     board::links_begin();
-    board::face_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
     say_help();
     if (board::button_closed()) {
