@@ -44,7 +44,7 @@ INTERRUPTS = {
 }  # fmt: skip
 
 # The functions of firmware/src/avr/kernel.S.
-KERNEL = ("tilenca_passes", "tilenca_sum")
+KERNEL = ("tilenca_blocks", "tilenca_sum")
 
 NETWORK, LOOP = "the network", "main loop, display, button, clock"
 # What a source file's instructions are for; what is in none of these is the main loop.

@@ -1,4 +1,4 @@
-// A tile: read the four sides, tick, write what it says, show it.
+// A tile: read the four sides, tick, write its frames, show its class.
 #include <Arduino.h>
 
 #include "app/appearance.h"
@@ -10,8 +10,8 @@
 #include "app/timing.h"
 #include "board/boot.h"
 #include "board/chip.h"
+#include "board/display.h"
 #include "board/eeprom.h"
-#include "board/face.h"
 #include "board/links.h"
 #include "board/pins.h"
 #include "board/usart.h"
@@ -22,7 +22,7 @@ using namespace tilenca;
 namespace {
 
 constexpr uint32_t kHostBaud = 115200;
-constexpr uint16_t kLeastStack = 64; // less of it unused is an error
+constexpr uint16_t kLeastStack = 64; // fewer unused bytes are an error
 constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
 
@@ -81,7 +81,8 @@ void write_sides() {
     }
 }
 
-// What the host says waits in its ring while there is no room for the answer, or EEPROM is being written.
+// The host's bytes wait in their ring while there is no room for an answer, and while EEPROM is being
+// written.
 void obey(uint32_t now_ms) {
     const auto read = [](uint8_t* byte) { return board::usart_read(board::kHostUsart, byte); };
     while (!store.writing() && room_to_speak() && host.answer(store, read, &tile, now_ms, &sentence)) {
@@ -151,10 +152,10 @@ void setup() {
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
     }
-    while (!board::stack_watch()) { // so that the first report knows
+    while (!board::stack_watch()) { // so that the first report is right
     }
     board::clock_begin();
-    board::face_begin(); // before the links' interrupts use the same ports
+    board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
     load_settings();

@@ -1,4 +1,4 @@
-// Does what the host's commands ask for, and answers each: docs/PROTOCOL.md section 6.
+// Carries out the host's commands and answers each: docs/PROTOCOL.md section 6.
 #pragma once
 
 #include <stdint.h>
@@ -14,14 +14,14 @@ constexpr uint8_t kMaxBlinkS = 60;
 
 class Host {
   public:
-    // `defaults` is what `preset default` brings back; it must outlive this.
+    // `preset default` restores `defaults`. Both must outlive this.
     Host(const Settings& defaults, const Boot& boot) : defaults_(defaults), boot_(boot) {}
 
-    // Takes bytes from the host until one of them gives an answer or none is left; `read(&byte)` gives the
-    // next one, or false. True if `sentence` is to be said.
+    // Takes bytes from the host until one of them completes a command or none is left. `read(&byte)` gives
+    // the next one, or false. True if `sentence` is now the answer.
     //
-    // `store` is a SettingsStore. Settings are answered once they are in it, by a later call. Only while it
-    // is not writing().
+    // `store` is a SettingsStore; call this only while it is not writing(). A later call gives the answer to
+    // settings that went there.
     template <class Store, class Read>
     bool answer(Store& store, Read read, Tile* tile, uint32_t now_ms, Sentence* sentence);
 
@@ -42,7 +42,7 @@ class Host {
     const Settings& defaults_;
     const Boot& boot_;
     CommandReader reader_;
-    Settings wanted_ = {}; // what a command asks for
+    Settings wanted_ = {}; // by the last command
     bool storing_ = false; // they are being written, and the answer is due
     bool blinking_ = false;
     uint32_t blink_until_ms_ = 0;

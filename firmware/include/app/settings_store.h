@@ -21,8 +21,8 @@ class SettingsStore {
 
     explicit SettingsStore(Eeprom eeprom = Eeprom()) : eeprom_(eeprom) {}
 
-    // For the start: takes the settings from EEPROM, or leaves them as they are. Waits for a byte that was
-    // being written when a reset came, 3.4 ms at most.
+    // Reads the settings at the start; leaves them unchanged if there are none. If a byte was being written
+    // when a reset came, waits for its end, 3.4 ms at most.
     Found load(Settings* settings);
 
     // Begins to write settings into both blocks; writing() does it.
@@ -34,7 +34,7 @@ class SettingsStore {
     // Goes on writing if the memory is ready for it, without waiting. False when all is written.
     bool writing();
 
-    // Whether both blocks are now what was to be written; only while not writing().
+    // Whether both blocks are what write() was given. Only while not writing().
     bool verify();
 
   private:

@@ -8,7 +8,7 @@
 #define RING_TAIL 1
 #define RING_BYTES 2
 
-// USART n has quarter n of a page. Past its last byte an index differs from the quarter's own in this bit.
+// USART n has quarter n of a page. This bit of an index changes from one quarter to the next.
 #define QUARTER_BIT 6
 #define QUARTER_BYTES (1 << QUARTER_BIT)
 #define QUARTER_START(number) ((number) * QUARTER_BYTES)

@@ -66,7 +66,7 @@ Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
     return Result::Store;
 }
 
-// Changes what the command names; false if there is no such setting or value.
+// Changes the setting that the command names. False if there is no such setting or value.
 bool Host::change(Settings* settings) const {
     const char* name = reader_.field(1);
     const char* text = reader_.field(2);

@@ -152,7 +152,7 @@ bool Telemetry::write(const Tile& tile, const Health& health, uint32_t now_ms, S
         next_side_ = (next_side_ + 1) % kSides;
         break;
     case Next::Time:
-        // A second after the last one was due, not after it was written: the phase stays.
+        // The next one is due a second after this one was due, not after it was written.
         last_time_ms_ += (now_ms - last_time_ms_) / kTimePeriodMs * kTimePeriodMs;
         write_time(tile, health, dropped_, now_ms, sentence);
         return true;

@@ -1,14 +1,15 @@
 ; The interrupts of the south link's software UART: a bit leaves, and an edge is stamped.
 ;
-; By hand, in half the compiler's cycles: every other interrupt waits for these, and what an edge is late by is
-; lost from the half bit that a receiver's sampling allows.
+; By hand, in half the compiler's cycles: every other interrupt waits for these, and a receiver tolerates only
+; half a bit of delay in all.
 
 #include "board/scratch.h"
 #include "board/south_layout.h"
 
     .section .text.tilenca_south_uart, "ax", @progbits
 
-; First of all the line, so that every edge comes equally late; then, every seventh time, the next toggles.
+; Changes the line first, so that every edge has the same delay. Every seventh time it then loads the next
+; toggles.
     .global TIMER1_OVF_vect
     .type TIMER1_OVF_vect, @function
 TIMER1_OVF_vect:

@@ -1,7 +1,7 @@
 ; The interrupts of the four USARTs. They do what put() and take() of board/ring.h do.
 ;
-; By hand, in half the compiler's cycles and without a change of flags: while one of these runs, an edge of the
-; south link waits for its time stamp. Z is the pointer, r24 the byte.
+; By hand, in half the compiler's cycles and without a change of flags: while one of these runs, an edge of
+; the south link waits for its time stamp. Z is the pointer, r24 the byte.
 
 #include "board/scratch.h"
 #include "board/usart_layout.h"
@@ -19,8 +19,8 @@
     reti
 .endm
 
-; Past the last byte of USART n's quarter, back to its first. The bit above the quarter is clear inside an even
-; quarter and set inside an odd one.
+; From past the last byte of USART n's quarter back to its first. QUARTER_BIT is clear inside an even quarter
+; and set inside an odd one.
 .macro wrap number
     .if \number % 2
     sbrs r30, QUARTER_BIT
@@ -46,7 +46,7 @@
     rjmp 3f
 1:  ldi r31, hi8(tilenca_received_page)
     lds r30, tilenca_received + RING_BYTES * \number + RING_HEAD
-    st Z+, r24 ; if there is no room, nobody will know
+    st Z+, r24 ; without effect if there is no room, since the head then stays
     wrap \number
     lds r24, tilenca_received + RING_BYTES * \number + RING_TAIL
     cpse r30, r24
@@ -73,7 +73,7 @@
     .size \vector, . - \vector
 .endm
 
-; The data register is empty. `ring` and `page` hold what waits; a quarter wraps, a whole page does so by itself.
+; The data register is empty. `ring` and `page` are the queue. An index into a whole page wraps by itself.
 .macro send vector, number, registers, ring, page, quarter=1
     handler \vector
     enter

@@ -8,7 +8,7 @@
 #include "board/boot_layout.h"
 #include "core/crc32.h"
 
-// Where variables end and the stack's room begins; the linker's.
+// From the linker: where variables end and the stack's room begins.
 extern "C" uint8_t __heap_start;
 
 namespace tilenca {
@@ -35,7 +35,7 @@ static_assert(offsetof(Survivors, mark) == SURVIVORS_MARK && offsetof(Survivors,
 extern "C" {
 __attribute__((section(".noinit"))) volatile Survivors tilenca_survivors;
 
-// Called by avr/boot.S with what MCUSR was, before any variable has its initial value.
+// avr/boot.S calls this with the value of MCUSR, before any variable has its initial value.
 __attribute__((used)) void tilenca_survive(uint8_t cause) {
     const uint32_t mark = tilenca_survivors.mark;
     tilenca_survivors.cause = cause != 0 ? cause : inferred_cause(mark);
@@ -59,7 +59,7 @@ uint32_t hung_at() {
 
 namespace {
 
-// The bytes of flash from here on; `address` moves on.
+// Reads bytes of flash and advances `address`.
 void read_flash(uint32_t* address, uint8_t* bytes, uint8_t size) {
     RAMPZ = static_cast<uint8_t>(*address >> 16);
     uint16_t low = static_cast<uint16_t>(*address);
@@ -69,7 +69,7 @@ void read_flash(uint32_t* address, uint8_t* bytes, uint8_t size) {
     *address += size;
 }
 
-// One byte after the last of the image: the program, then the variables' initial values.
+// The end of the image, which is the program and the initial values of the variables.
 uint32_t image_end() {
     uint32_t end;
     __asm__("ldi %A0, lo8(__data_load_end) \n\t"
@@ -95,8 +95,8 @@ uint32_t firmware_id() {
     return crc.value();
 }
 
-// Interrupt first, reset if that does not come through: old boot loaders of the Mega leave the watchdog on,
-// and are reset by it for ever before they have started anything.
+// Interrupt first, and reset only if the interrupt does not come through: old boot loaders of the Mega leave
+// the watchdog on, which then resets them again and again before they have started anything.
 void watchdog_begin() {
     const uint8_t interrupts = SREG;
     cli();

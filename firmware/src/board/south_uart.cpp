@@ -32,21 +32,22 @@ namespace {
 // Timer 5 counts F_CPU / 8: 2 MHz / 38,400 is 52.1.
 constexpr uint8_t kSouthBitCounts = 52;
 
-// A UART's edges are a bit apart at least. What comes this much faster on average, but for a few, is noise.
+// A UART's edges are at least a bit apart. Edges that are closer than this on average are noise, except
+// for 24.
 constexpr uint8_t kFastestCounts = 45;
-constexpr uint16_t kFewEdgesCounts = 24 * kFastestCounts;
-// How long noise makes deaf: 20 ms. To fill the ring takes the interrupt less than one.
-constexpr uint16_t kRestCounts = 40000;
+constexpr uint16_t kAllowedExcessCounts = 24 * kFastestCounts;
+// 20 ms. The interrupt takes less than 1 ms to fill the ring.
+constexpr uint16_t kHoldoffCounts = 40000;
 
 static_assert(kSouthRx.port == 'K' && kSouthRx.bit == 6, "PCINT22; the interrupt stores port K");
 static_assert(kSouthTx.port == 'K' && mask_of(kSouthTx) == SOUTH_TX_MASK, "avr/south_uart.S");
 
 using Receiver = EdgeReceiver<kSouthBitCounts>;
 Receiver receiver;
-uint16_t looked_at = 0;  // when the ring was last looked at
-uint8_t looked_head = 0; // and its head then
-uint16_t haste = 0;      // by how many counts the edges are ahead of what a UART can do
-uint16_t rests_since = 0;
+uint16_t looked_at = 0;   // when south_read() last looked at the ring
+uint8_t looked_head = 0;  // the ring's head at that time
+uint16_t edge_excess = 0; // excess edge rate: by how many counts the edges are ahead of the fastest UART's
+uint16_t holdoff_since = 0;
 uint16_t overruns = 0;
 
 static_assert(kMaxToggleBytes <= kToggleBytes, "one index reaches all of them");
@@ -62,13 +63,13 @@ void listen(uint16_t now) {
     receiver.reset();
     looked_at = now;
     looked_head = 0;
-    haste = 0;
+    edge_excess = 0;
     PCIFR = 1 << PCIF2;
     PCICR = 1 << PCIE2;
 }
 
-// Gives up what waits in the ring. Too many edges for the time they took are noise, which would soon fill it
-// again; otherwise the main loop was late.
+// Drops the edges in the ring. Noise would soon fill it again, so a holdoff follows; otherwise the main loop
+// was late.
 void lose_edges(uint16_t now, bool noise) {
     overruns += overruns != UINT16_MAX;
     if (!noise) {
@@ -77,28 +78,29 @@ void lose_edges(uint16_t now, bool noise) {
     }
     PCICR = 0;
     SOUTH_EDGE_TAIL = SOUTH_EDGE_HEAD;
-    rests_since = now;
+    holdoff_since = now;
 }
 
 uint8_t edges_waiting() {
     return static_cast<uint8_t>(SOUTH_EDGE_HEAD - SOUTH_EDGE_TAIL);
 }
 
-// Whether edges come faster than a UART's.
+// Whether edges have come faster than a UART's.
 bool is_noise(uint16_t now) {
     const uint8_t head = SOUTH_EDGE_HEAD;
-    haste += static_cast<uint8_t>(head - looked_head) * kFastestCounts;
+    edge_excess += static_cast<uint8_t>(head - looked_head) * kFastestCounts;
     const uint16_t passed = now - looked_at;
-    haste = haste > passed ? haste - passed : 0;
+    edge_excess = edge_excess > passed ? edge_excess - passed : 0;
     looked_head = head;
     looked_at = now;
-    return haste > kFewEdgesCounts;
+    return edge_excess > kAllowedExcessCounts;
 }
 
-// As the interrupt stores it, with the level in bit 0: by hand, since the compiler takes thrice the cycles.
+// Takes an edge that the interrupt has stored, and puts its level into bit 0. By hand, since the compiler
+// needs three times the cycles.
 inline __attribute__((always_inline)) bool take_edge(uint16_t* stamp) {
     uint8_t low, high;
-    uint16_t at = SOUTH_EDGE_TAIL; // the low byte of an address; which page, is put above it
+    uint16_t at = SOUTH_EDGE_TAIL; // the low byte of an address; the high byte is the page's
     if (static_cast<uint8_t>(at) == SOUTH_EDGE_HEAD) {
         return false;
     }
@@ -123,7 +125,7 @@ inline __attribute__((always_inline)) bool take_edge(uint16_t* stamp) {
 
 void south_begin() {
     scratch_begin();
-    set(kSouthTx, true); // an idle line is high, before it is driven
+    set(kSouthTx, true); // high, as an idle line is, before the pin drives it
     make_output(kSouthTx);
     pull_up(kSouthRx);
 
@@ -143,16 +145,16 @@ void south_begin() {
 }
 
 bool south_read(uint8_t* byte) {
-    // `now` before the ring: an edge that comes in between is then taken before its time, which does no harm.
+    // `now` is read before the ring. An edge in between is taken a little early, which does no harm.
     const uint16_t now = stamp();
     if (!listening() && edges_waiting() == 0) {
-        if (static_cast<uint16_t>(now - rests_since) >= kRestCounts) {
+        if (static_cast<uint16_t>(now - holdoff_since) >= kHoldoffCounts) {
             listen(now);
         }
         return false;
     }
     const bool noise = is_noise(now);
-    if (noise || !listening()) { // or the interrupt found no room and turned itself off
+    if (noise || !listening()) { // the interrupt turns itself off when it finds no room
         lose_edges(now, noise);
         return false;
     }
@@ -166,7 +168,7 @@ void south_write(const uint8_t* bytes, uint8_t size) {
     toggles_of(bytes, size, const_cast<uint8_t*>(tilenca_toggles));
     SOUTH_TOGGLES = tilenca_toggles[0];
     tilenca_toggles_at = static_cast<uint8_t>(reinterpret_cast<uintptr_t>(&tilenca_toggles[1]));
-    TIFR1 = 1 << TOV1; // an old match would make the first bit short
+    TIFR1 = 1 << TOV1; // an old overflow would make the first bit too short
     TIMSK1 = 1 << TOIE1;
 }
 

@@ -31,7 +31,7 @@ volatile uint16_t tilenca_usart_overruns[4];
 
 namespace {
 
-// As they lie in data space, the same for all four (datasheet, register summary).
+// The order in data space, the same for all four (datasheet, register summary).
 struct Registers {
     volatile uint8_t control_a;
     volatile uint8_t control_b;
@@ -51,7 +51,7 @@ static_assert(offsetof(QuarterRing, head) == RING_HEAD && offsetof(QuarterRing, 
                   sizeof(QuarterRing) == RING_BYTES,
               "avr/usart.S");
 static_assert(offsetof(HostRing, head) == RING_HEAD && offsetof(HostRing, tail) == RING_TAIL, "avr/usart.S");
-static_assert(4 * QUARTER_BYTES == sizeof(Page), "a quarter each; the bit above one tells it from the next");
+static_assert(4 * QUARTER_BYTES == sizeof(Page), "QUARTER_BIT changes from one quarter to the next");
 static_assert(offsetof(Registers, control_b) == USART_CONTROL && offsetof(Registers, data) == USART_DATA,
               "avr/usart.S");
 static_assert(kHostUsart == 0, "avr/usart.S");

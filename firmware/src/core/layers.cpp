@@ -6,14 +6,14 @@ namespace tilenca {
 
 int16_t sum_of_messages(const int8_t* messages, uint8_t channels) {
     int16_t sum = 0;
-    for (uint8_t i = 0; i < kTaps * channels; ++i) {
+    for (uint8_t i = 0; i < kNeighbourhood * channels; ++i) {
         sum += messages[i];
     }
     return sum;
 }
 
 int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
-    const uint8_t end = (to + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
+    const uint8_t end = (to + kBlockOutputs - 1) / kBlockOutputs * kBlockOutputs;
     hidden_outputs<OneCell>(layer, inputs.values, from, end, outputs);
     int16_t sum = 0;
     for (uint8_t j = from; j < to; ++j) {

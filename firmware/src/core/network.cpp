@@ -25,14 +25,14 @@ void Forward::begin(int8_t* inputs, int16_t* state) {
     inputs[count] = kEnd;
     state_ = state;
     const Layer& layer = network_.hidden1;
-    const int16_t sum = layer.narrow_only ? 0 : sum_of_messages(inputs, network_.channels());
+    const int16_t sum = layer.only_16_bit ? 0 : sum_of_messages(inputs, network_.channels());
     begin_layer(layer, {inputs, sum}, Stage::Hidden1);
 }
 
 void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage) {
     uint8_t slice = 0;
     for (int16_t rows = kRowsPerSlice; rows >= layer.inputs && slice < layer.outputs; rows -= layer.inputs) {
-        slice += kPassOutputs;
+        slice += kBlockOutputs;
     }
     slice_ = slice;
     layer_ = &layer;

@@ -140,7 +140,7 @@ TEST_CASE_FIXTURE(Fixture, "restart is as the button") {
     CHECK(tile.shown() == Tile::kNothing);
 }
 
-TEST_CASE_FIXTURE(Fixture, "a face blinks as long as told, across the wrap of the clock") {
+TEST_CASE_FIXTURE(Fixture, "a display blinks as long as told, across the wrap of the clock") {
     now_ms = 0xFFFFF000;
     CHECK_FALSE(host.blinking(now_ms));
     CHECK(answer("BLINK,5") == line_of("answer to blink"));

@@ -64,7 +64,7 @@ void update(Cell& cell, const int8_t* const (&neighbours)[kSides]) {
 // One layer of one output, for sums that are easy to see.
 int8_t hidden_output_of(int8_t weight, int16_t bias, int8_t input) {
     const LayerStream stream(1, 1, &weight, &bias);
-    int8_t outputs[kPassOutputs];
+    int8_t outputs[kBlockOutputs];
     const int16_t sum = hidden_outputs(stream.layer(), {&input, input}, 0, 1, outputs);
     CHECK(sum == outputs[0]); // those that the layer does not have are zero
     return outputs[0];
@@ -212,7 +212,7 @@ TEST_CASE("the best class has the greatest stored score, the first among equals"
 TEST_CASE("the exported model is whole") {
     CHECK(model::kModel.id == model::kModelId);
     CHECK(model::kModel.network.channels() == model::kChannels);
-    CHECK(model::kModel.network.hidden1.inputs == kTaps * model::kChannels);
+    CHECK(model::kModel.network.hidden1.inputs == kNeighbourhood * model::kChannels);
     CHECK(model::kModel.network.hidden2.inputs == model::kHidden1);
     CHECK(model::kModel.network.output.inputs == model::kHidden2);
     CHECK(model::kModel.classes == model::kClasses);
