@@ -16,9 +16,10 @@ using namespace tilenca;
 volatile uint16_t vectors, calls, differences, done;
 volatile uint32_t interrupts;
 volatile uint16_t blocks_of_24_bits, zero_outputs, full_outputs, full_states;
-int8_t inputs[kMaxInputs + 1];
-int16_t states[kMaxChannels + kBlockOutputs], start_states[kMaxChannels + kBlockOutputs];
-uint8_t last_output;
+#define LOOKED_AT __attribute__((used)) // though the program does not read it
+LOOKED_AT int8_t inputs[kMaxInputs + 1];
+LOOKED_AT int16_t states[kMaxChannels + kBlockOutputs];
+LOOKED_AT int16_t start_states[kMaxChannels + kBlockOutputs];
 
 namespace {
 
