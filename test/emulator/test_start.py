@@ -2,9 +2,9 @@
 
 import pytest
 
+from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.emulator import Array
-from tilenca.paths import FIRMWARE_ELF
-from tilenca.protocol import settings_block
+from tilenca.protocol.settings import settings_block
 
 PCICR, DDRK = 0x68, 0x107
 PIN_CHANGES_K = 1 << 2

@@ -46,8 +46,9 @@ class Tile {
     bool has_frame(Side side) const { return untold_ & mask_of(side); }
     uint8_t take_frame(Side side, uint8_t* wire);
 
-    // The class to show, or kNothing before the first update.
-    uint8_t shown() const { return shown_; }
+    // The class to show, or kNothing before the first update, and how sure it is, as Decision says.
+    uint8_t shown() const { return decided_.best; }
+    uint8_t margin() const { return decided_.margin; }
 
     uint32_t updates() const { return updates_; }
     const Link& link(Side side) const { return links_[index_of(side)]; }
@@ -72,7 +73,7 @@ class Tile {
     Link links_[kSides];
     uint32_t due_ms_; // end of the current period
     uint32_t updates_ = 0;
-    uint8_t shown_ = kNothing;
+    Decision decided_ = {kNothing, Decision::kNoMargin};
     uint8_t untold_ = 0; // one bit per side that has not taken the current state
 };
 

@@ -34,8 +34,8 @@ class Cell {
 
     uint8_t channels() const { return network_.channels(); }
 
-    // The class with the greatest stored score among the last `classes` channels, the lowest among equals.
-    uint8_t best_class(uint8_t classes) const;
+    // Decides by the stored scores, which are the last `classes` channels.
+    Decision decide(uint8_t classes) const;
 
   private:
     void tell();

@@ -8,7 +8,7 @@
 
 namespace tilenca {
 
-constexpr uint8_t kProtocolVersion = 2;
+constexpr uint8_t kProtocolVersion = 3;
 constexpr uint8_t kKindState = 0;
 constexpr uint8_t kHeaderSize = 5;
 constexpr uint8_t kCrcSize = 2;

@@ -41,6 +41,14 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
+struct Decision {
+    uint8_t best;   // as best_class() says
+    uint8_t margin; // how far it is ahead of the second best, in units of a message, rounded: 0..254
+
+    static constexpr uint8_t kNoMargin = 255; // there is only one class
+};
+Decision decide(const int16_t* scores, uint8_t classes);
+
 // The sum of 5 C messages.
 int16_t sum_of_messages(const int8_t* messages, uint8_t channels);
 

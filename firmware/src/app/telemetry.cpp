@@ -28,10 +28,13 @@ void write_tile(const Tile& tile, uint32_t now_ms, Sentence* sentence) {
     sentence->number(tile.settings().tile_id);
     sentence->number(now_ms);
     sentence->number(tile.updates());
+    const bool decided = tile.shown() != Tile::kNothing;
     sentence->nothing();
-    if (tile.shown() != Tile::kNothing) {
+    if (decided) {
         sentence->more(tile.model().looks[tile.shown()].label);
     }
+    decided ? sentence->number(tile.shown()) : sentence->nothing();
+    tile.margin() != Decision::kNoMargin ? sentence->number(tile.margin()) : sentence->nothing();
     sentence->nothing();
     for (uint8_t i = 0; i < kSides; ++i) {
         sentence->more(tile.link(side_at(i)).alive() ? kSideLetters[i] : '-');

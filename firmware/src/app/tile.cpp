@@ -21,7 +21,7 @@ Tile::Tile(const Model& model, const Settings& settings, uint32_t now_ms)
 void Tile::restart() {
     cell_.seed();
     updates_ = 0;
-    shown_ = kNothing;
+    decided_ = {kNothing, Decision::kNoMargin};
     tell();
 }
 
@@ -43,7 +43,7 @@ bool Tile::tick(uint32_t now_ms) {
             return false;
         }
         ++updates_;
-        shown_ = cell_.best_class(model_.classes);
+        decided_ = cell_.decide(model_.classes);
         tell();
         return true;
     }

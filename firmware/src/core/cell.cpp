@@ -40,8 +40,8 @@ bool Cell::update_slice() {
     return true;
 }
 
-uint8_t Cell::best_class(uint8_t classes) const {
-    return tilenca::best_class(state_ + channels() - classes, classes);
+Decision Cell::decide(uint8_t classes) const {
+    return tilenca::decide(state_ + channels() - classes, classes);
 }
 
 void Cell::tell() {

@@ -20,6 +20,21 @@ uint8_t best_class(const int16_t* scores, uint8_t classes) {
     return best;
 }
 
+Decision decide(const int16_t* scores, uint8_t classes) {
+    const uint8_t best = best_class(scores, classes);
+    uint16_t least = UINT16_MAX;
+    for (uint8_t k = 0; k < classes; ++k) {
+        const uint16_t ahead = static_cast<uint16_t>(scores[best] - scores[k]);
+        if (k != best && ahead < least) {
+            least = ahead;
+        }
+    }
+    if (classes == 1) {
+        return {best, Decision::kNoMargin};
+    }
+    return {best, static_cast<uint8_t>((least + (1 << (kMessageShift - 1))) >> kMessageShift)};
+}
+
 void Forward::begin(int8_t* inputs, int16_t* state) {
     const uint8_t count = network_.hidden1.inputs;
     inputs[count] = kEnd;
