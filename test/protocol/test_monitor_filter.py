@@ -35,7 +35,9 @@ def decoder() -> Any:
 def test_sentences_become_words_however_they_are_cut(decoder: Any) -> None:
     stream = (format_sentence(TILE) + format_sentence(NakSentence(7, "VALUE", "SET"))).decode()
     shown = "".join(decoder.rx(character) for character in stream + "$")
-    assert shown == ("tile 7 TILE shows 4 margin 30 update 12 up 1.2 s links N-SW\r\ntile 7 NAK SET: wrong field\r\n")
+    assert shown == (
+        "tile 7 TILE shows 4 margin 30 update 12 up 1.2 s links N-SW\r\ntile 7 NAK SET: wrong field\r\n"
+    )
 
 
 def test_damaged_lines_are_shown_and_the_next_is_read(decoder: Any) -> None:
