@@ -40,7 +40,7 @@ def test_a_tile_speaks_within_a_fifth_of_a_second(talk: Talk) -> None:
 def test_asked_it_greets_again(talk: Talk) -> None:
     hello = talk.last(HelloSentence)
     assert (hello.version, hello.tile, hello.period_ms, hello.updates, hello.brightness) == (
-        2,
+        3,
         7,
         100,
         0,
