@@ -93,10 +93,10 @@ def test_blocks_of_both_kinds_take_turns(first: int, tmp_path: Path) -> None:
     """Within a layer, and within a call."""
     model = random_network(Dimensions(21, 40, 40), 127, 100)
     for layer in (1, 2, 3):
-        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // packing.BLOCK_OUTPUTS % 2 == first
-        model.integer[f"w{layer}"][is_narrow] //= 64
+        is_16_bit = np.arange(len(model.integer[f"b{layer}"])) // packing.BLOCK_OUTPUTS % 2 == first
+        model.integer[f"w{layer}"][is_16_bit] //= 64
         kinds = [part.is_16_bit for part in packing.blocks(model, layer)]
-        assert kinds == list(is_narrow[:: packing.BLOCK_OUTPUTS])
+        assert kinds == list(is_16_bit[:: packing.BLOCK_OUTPUTS])
     tile = run(model, tmp_path, 1000)
     assert tile.integer("blocks_of_24_bits") > 0
     assert tile.integer("differences") == 0

@@ -32,8 +32,8 @@ namespace {
 // Timer 5 counts F_CPU / 8: 2 MHz / 38,400 is 52.1.
 constexpr uint8_t kSouthBitCounts = 52;
 
-// A UART's edges are at least a bit apart. Edges that are closer than this on average are noise, except
-// for 24.
+// A UART's edges are at least a bit apart. Edges that are closer than this on average are noise; a burst of
+// 24 is tolerated.
 constexpr uint8_t kFastestCounts = 45;
 constexpr uint16_t kAllowedExcessCounts = 24 * kFastestCounts;
 // 20 ms. The interrupt takes less than 1 ms to fill the ring.

@@ -17,8 +17,8 @@ using QuarterRing = Ring<QUARTER_BYTES>;
 using HostRing = Ring<256>;
 
 // The queues that the interrupts in avr/usart.S work on. A byte takes 260 us between north and south and 80
-// us between east and west, so a quarter holds at least 5 ms of them (links.cpp). The host's page holds one
-// sentence of each kind.
+// us between east and west, so a quarter holds at least 5 ms of them (links.cpp). What goes to the host
+// has a page of its own, since a sentence may have 200 bytes.
 extern "C" {
 TILENCA_PAGE Page tilenca_received_page;
 TILENCA_PAGE Page tilenca_sending_page;
