@@ -1,5 +1,7 @@
 """Every function of the simulator's C interface that is called with what cannot be, and says so."""
 
+import subprocess
+import sys
 from typing import Any
 
 import pytest
@@ -176,3 +178,36 @@ def test_no_function_is_left_out() -> None:
         "grid_batch_new", "grid_batch_free", "grid_batch_run", "grid_batch_updates",
         "schedule_new", "schedule_free", "schedule_next",
     }  # fmt: skip
+
+
+FEW_THREADS = """
+import resource
+from tilenca.base import native_library
+library = native_library.load("simulator")
+ffi, lib = library.ffi, library.lib
+CELLS = 1 << 14
+new = ffi.new
+arrays = {
+    "starts": new("int32_t[]", list(range(CELLS + 1))), "neighbours": new("int32_t[]", [CELLS] * 4 * CELLS),
+    "alive": new("uint8_t[]", [1] * CELLS), "target": new("int8_t[]", CELLS),
+    "seeds": new("uint64_t[]", list(range(CELLS))),
+}
+weights = [new("int8_t[]", 5), new("int16_t[]", 1)] * 3
+setup = new("tilenca_setup*", {"runs": CELLS, "cells": CELLS} | arrays)
+model = new("tilenca_model*", (1, 1, 1, 1, *weights))
+states, shown = new("int16_t[]", CELLS), new("int8_t[]", CELLS)
+right = new("float[]", CELLS)
+batch = library.call("grid_batch_new", model, setup, states, shown)
+pages = int(open("/proc/self/statm").read().split()[0])
+limit = pages * resource.getpagesize() + 4 * 2**20  # less than the stack of one thread
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+library.call("grid_batch_run", batch, 1, 8, right, ffi.NULL)
+print(library.call("grid_batch_updates", batch))
+"""
+
+
+def test_threads_that_the_machine_does_not_give_are_done_without() -> None:
+    command = [sys.executable, "-c", FEW_THREADS]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert 0.9 < int(done.stdout) / (1 << 14) < 1.1  # each cell updates once a step, on average

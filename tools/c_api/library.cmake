@@ -52,6 +52,9 @@ function(tilenca_library name)
     set(exports ${TILENCA_C_API_DIR}/exports.map)
     target_link_libraries(${name} PRIVATE tilenca_flags)
     target_link_options(${name} PRIVATE -Wl,-Bsymbolic "-Wl,--version-script=${exports}")
+    if(NOT TILENCA_SANITIZE) # whose functions come from a library that is loaded first
+        target_link_options(${name} PRIVATE -Wl,--no-undefined)
+    endif()
     set_target_properties(${name} PROPERTIES LINK_DEPENDS ${exports} LINKER_LANGUAGE CXX)
 
     file(GLOB headers ${CMAKE_CURRENT_SOURCE_DIR}/include/tilenca/*.h)

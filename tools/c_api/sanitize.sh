@@ -3,12 +3,10 @@
 set -eu
 cd "$(dirname "$0")/../.."
 
-if ! [ -f build/sanitize/CMakeCache.txt ]; then
-    generator=
-    if command -v ninja >/dev/null; then generator="-G Ninja"; fi
-    # shellcheck disable=SC2086  # two words or none
-    cmake --preset sanitize $generator
-fi
+generator=
+if command -v ninja >/dev/null && ! [ -f build/sanitize/Makefile ]; then generator="-G Ninja"; fi
+# shellcheck disable=SC2086  # two words or none
+cmake --preset sanitize $generator >/dev/null
 cmake --build --preset sanitize --parallel "$(nproc)"
 
 if [ $# = 0 ]; then

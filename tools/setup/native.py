@@ -42,16 +42,20 @@ def build_libraries(levels: Sequence[str]) -> None:
     env = {
         name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")
     }
+    cache = BUILD / "CMakeCache.txt"
     if configured_for(BUILD) != ROOT:
         shutil.rmtree(BUILD, ignore_errors=True)
         say("compiling the C++ libraries")
-        generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    if not cache.exists() or cache.stat().st_mtime < (ROOT / "CMakePresets.json").stat().st_mtime:
+        ninja = shutil.which("ninja") is not None and not (BUILD / "Makefile").exists()
+        generator = ["-G", "Ninja"] if ninja else []
         run(
             ["cmake", "--preset", PRESET, *generator],
             f"CMake cannot prepare the libraries, {REMEDY}",
             env,
             True,
         )
+        cache.touch()  # CMake leaves it alone where nothing in it changes
     wanted = [target for level in levels for target in LIBRARIES.get(level, [])]
     jobs = ["--parallel", str(os.cpu_count() or 1)]
     build = ["cmake", "--build", "--preset", PRESET, *jobs, "--target", *wanted]

@@ -31,7 +31,7 @@ struct tilenca_schedule {
 namespace {
 
 tilenca::PackedNetwork packed(const tilenca_model& m) {
-    const uint8_t wide = tilenca::kTaps * m.channels;
+    const uint8_t wide = tilenca::kNeighbourhood * m.channels;
     return {m.channels,
             {wide, m.hidden1, m.w1, m.b1},
             {m.hidden1, m.hidden2, m.w2, m.b2},
@@ -39,7 +39,7 @@ tilenca::PackedNetwork packed(const tilenca_model& m) {
 }
 
 void update_by_the_chips_code(const tilenca_model& m, int16_t* states, const int8_t* inputs, size_t count) {
-    const uint8_t wide = tilenca::kTaps * m.channels;
+    const uint8_t wide = tilenca::kNeighbourhood * m.channels;
     const tilenca::LayerStream hidden1(wide, m.hidden1, m.w1, m.b1);
     const tilenca::LayerStream hidden2(m.hidden1, m.hidden2, m.w2, m.b2);
     const tilenca::LayerStream output(m.hidden2, m.channels, m.w3, m.b3);
@@ -57,7 +57,7 @@ void update_by_the_chips_code(const tilenca_model& m, int16_t* states, const int
 
 bool update_side_by_side(const tilenca_model& m, int16_t* states, const int8_t* inputs, size_t count,
                          int lanes) {
-    const size_t wide = tilenca::kTaps * m.channels;
+    const size_t wide = tilenca::kNeighbourhood * m.channels;
     std::vector<tilenca::CellUpdate> updates(count);
     for (size_t i = 0; i < count; ++i) {
         updates[i] = {inputs + i * wide, states + i * m.channels, 0};
