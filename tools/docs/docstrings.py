@@ -1,0 +1,47 @@
+"""Keeps colons of plain prose out of napoleon's hands.
+
+Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon. This project
+writes types as annotations only, so there a colon is one of the sentence. It is hidden while napoleon works.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+HIDDEN_COLON = "\ue000"  # of the private use area: no text has it
+BEFORE_NAPOLEON, AFTER_NAPOLEON = 400, 600
+ATTRIBUTES = {"attribute", "data", "property"}
+SECTIONS = {"Returns:", "Yields:"}
+
+
+def hide_colons(kind: str, lines: list[str]) -> None:
+    """Hides the colons that napoleon would take for the end of a type; changes `lines`.
+
+    Args:
+        kind: autodoc's word for what is documented, such as "property".
+        lines: the docstring.
+    """
+    prose = {0} if kind in ATTRIBUTES else set()
+    prose |= {number + 1 for number, line in enumerate(lines) if line.strip() in SECTIONS}
+    for number in prose & set(range(len(lines))):
+        lines[number] = lines[number].replace(":", HIDDEN_COLON)
+
+
+def show_colons(lines: list[str]) -> None:
+    """Puts the hidden colons back; changes `lines`."""
+    lines[:] = [line.replace(HIDDEN_COLON, ":") for line in lines]
+
+
+def setup(app: "Sphinx") -> dict[str, bool]:
+    """Listens to autodoc before and after napoleon does."""
+
+    def before(_app: object, kind: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:
+        hide_colons(kind, lines)
+
+    def after(_app: object, _kind: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:
+        show_colons(lines)
+
+    app.connect("autodoc-process-docstring", before, priority=BEFORE_NAPOLEON)
+    app.connect("autodoc-process-docstring", after, priority=AFTER_NAPOLEON)
+    return {"parallel_read_safe": True}
