@@ -3,6 +3,8 @@
 PIO     := .venv/bin/pio
 PYTHON  := .venv/bin/python
 TILENCA := .venv/bin/tilenca
+# A program of tools/: $(TOOL) bench.kernel
+TOOL    := PYTHONPATH=tools $(PYTHON) -m
 ENV     := megaatmega2560
 ELF     := .pio/build/$(ENV)/firmware.elf
 
@@ -19,7 +21,7 @@ unexport PLATFORMIO_CORE_DIR
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
-	types budgets docs format train bench clean
+	imports types budgets docs format train bench clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -41,9 +43,9 @@ test: setup-test ## run every test: the firmware's core on this machine, then ho
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest
 
-check: static test ## what to run before every commit: format, lint, types, budgets, tests
+check: static test ## what to run before every commit: format, lint, imports, types, budgets, tests
 
-static: format-check lint types budgets docs ## everything of `make check` but the tests
+static: format-check lint imports types budgets docs ## everything of `make check` but the tests
 
 format-check: setup-check
 	@.venv/bin/ruff format --check
@@ -55,13 +57,16 @@ lint: setup-check
 	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator tools/training
 	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV) -e board_test
 
+imports: setup-check ## check which room may import from which
+	@.venv/bin/lint-imports --no-logo
+
 types: setup-check
 	@.venv/bin/mypy
 
-budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware with tools/budgets.toml
+budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware with tools/firmware/budgets.toml
 	@$(PIO) run -s -e $(ENV)
 	@$(TILENCA) export --check
-	@$(PYTHON) tools/budgets.py $(ELF)
+	@$(TOOL) firmware.budgets $(ELF)
 
 docs: setup-docs ## build the documentation site into build/docs; warnings and broken links are errors
 	@.venv/bin/sphinx-build -q -E -n -W --keep-going -c tools/docs -d build/docs/.doctrees . build/docs
@@ -77,12 +82,12 @@ train: setup-train ## train a model of the digits into build/models/digits
 
 bench: setup-train ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md
 	@$(PIO) run -s -e $(ENV)
-	@$(PYTHON) tools/bench.py $(ELF)
-	@$(PYTHON) tools/bench_links.py $(ELF) --write docs/BENCHMARKS.md
-	@$(PYTHON) tools/bench_training.py
-	@$(PYTHON) tools/bench_kernel.py --write docs/BENCHMARKS.md
-	@$(PYTHON) tools/bench_fleet.py
-	@$(PYTHON) tools/bench_emulator.py --write docs/BENCHMARKS.md
+	@$(TOOL) bench.overview $(ELF)
+	@$(TOOL) bench.links $(ELF) --write docs/BENCHMARKS.md
+	@$(TOOL) bench.training
+	@$(TOOL) bench.kernel --write docs/BENCHMARKS.md
+	@$(TOOL) bench.fleet
+	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
 	@rm -rf .pio build/emulator build/simulator build/training build/strict build/models build/docs

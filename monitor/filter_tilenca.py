@@ -9,9 +9,9 @@ HOST = str(Path(__file__).resolve().parents[1] / "host")
 if HOST not in sys.path:
     sys.path.append(HOST)  # PlatformIO may run in another environment than the package's
 
-from tilenca.boardtest import board_test_text  # noqa: E402
-from tilenca.telemetry import LineReader  # noqa: E402
-from tilenca.wording import printable, said  # noqa: E402
+from tilenca.protocol.board_test import board_test_text  # noqa: E402
+from tilenca.protocol.describe import printable, said  # noqa: E402
+from tilenca.protocol.line_reader import LineReader  # noqa: E402
 
 
 class Tilenca(DeviceMonitorFilterBase):

@@ -4,6 +4,11 @@ import os
 import signal
 import tempfile
 
+from support.avr import arduino, arduino_core, avr, talk
+from support.firmware import firmware
+
+__all__ = ["arduino", "arduino_core", "avr", "firmware", "talk"]  # fixtures for every room
+
 
 def pytest_configure() -> None:
     """Lets Ctrl-C, and the tests' own, reach the programs under test.

@@ -10,23 +10,24 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tilenca import __version__, paths
-from tilenca.arguments import Parser
-from tilenca.errors import TilencaError
-from tilenca.interrupts import ending_like_ctrl_c
-from tilenca.streams import check_streams, finish_streams, warn
+from tilenca import __version__
+from tilenca.base import paths
+from tilenca.base.errors import TilencaError
+from tilenca.base.signals import ending_like_ctrl_c
+from tilenca.base.stdio import check_streams, finish_streams, warn
+from tilenca.commands.arguments import Parser
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    "train": ("tilenca.train", "train a model on the shapes of a file"),
-    "evaluate": ("tilenca.evaluate", "measure how well a model does on shapes"),
-    "plot": ("tilenca.plot", "draw how training went, or a film of what tiles show"),
-    "simulate": ("tilenca.simulate_command", "run drawings on the firmware's core, many runs at once"),
-    "export": ("tilenca.export", "render a model into the firmware's C++ files"),
-    "emulate": ("tilenca.emulate", "run the firmware image on one emulated board per tile"),
-    "devices": ("tilenca.devices", "list the tiles found on USB"),
-    "flash": ("tilenca.flash", "build the firmware and program all tiles side by side"),
-    "set": ("tilenca.settings_command", "set something in one, some or all tiles"),
-    "monitor": ("tilenca.monitor", "watch the telemetry of all tiles"),
+    "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
+    "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
+    "plot": ("tilenca.commands.plot", "draw how training went, or a film of what tiles show"),
+    "simulate": ("tilenca.commands.simulate", "run drawings on the firmware's core, many runs at once"),
+    "export": ("tilenca.commands.export", "render a model into the firmware's C++ files"),
+    "emulate": ("tilenca.commands.emulate", "run the firmware image on one emulated board per tile"),
+    "devices": ("tilenca.commands.devices", "list the tiles found on USB"),
+    "flash": ("tilenca.commands.flash", "build the firmware and program all tiles side by side"),
+    "set": ("tilenca.commands.set", "set something in one, some or all tiles"),
+    "monitor": ("tilenca.commands.monitor", "watch the telemetry of all tiles"),
 }
 
 FAILED = 1

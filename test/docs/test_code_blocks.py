@@ -4,11 +4,10 @@ import shlex
 from pathlib import Path
 
 import pytest
-from blocks import Block, blocks
-from reader import Reader, parse
 
-from tilenca import paths
-from tilenca.building import build
+from support.blocks import Block, blocks
+from support.reader import Reader, parse
+from tilenca.base import paths
 
 DOCS = paths.ROOT / "docs"
 # A user follows these from top to bottom.
@@ -22,8 +21,8 @@ def name(document: Path) -> str:
 
 
 @pytest.mark.parametrize("document", FOLLOWED, ids=name)
-def test_every_block_runs_in_the_order_of_the_page(document: Path, tmp_path: Path) -> None:
-    build()  # the commands run the firmware of this checkout
+def test_every_block_runs_in_the_order_of_the_page(document: Path, firmware: Path, tmp_path: Path) -> None:
+    assert firmware.exists()  # the commands run the build of this checkout
     with Reader(tmp_path) as reader:
         for block in blocks(document):
             reader.follow(block)

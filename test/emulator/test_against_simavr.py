@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from conftest import Compile, compile_differential, run_tool
+
+from support.avr import Compile, compile_differential, run_tool
 
 
 @pytest.fixture(scope="module")

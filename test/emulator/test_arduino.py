@@ -5,8 +5,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from conftest import ARDUINO, Compile
 
+from support.avr import ARDUINO, Compile
 from tilenca.emulator import Array, EmulatedTile
 
 EXAMPLES = sorted(ARDUINO.glob("libraries/*/examples/*/*.ino"))

@@ -1,10 +1,11 @@
 """Many tiles: lockstep, cables, switching on, and the same results whatever the slicing."""
 
 import pytest
-from conftest import Compile
 
-from tilenca.emulator import EAST, WEST, Array, EmulatedTile
-from tilenca.errors import UsageError
+from support.avr import Compile
+from tilenca.base.errors import UsageError
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator import Array, EmulatedTile
 
 # Passes on what comes from the west, plus one, to the east; the first tile of a row starts it.
 BUCKET_BRIGADE = """

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from vandals import Plug
 
-from tilenca.boardtest import board_test_text
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array, EmulatedTile, LinkFault
-from tilenca.paths import ROOT
-from tilenca.telemetry import LineReader
+from support.line_faults import Plug
+from tilenca.base.paths import ROOT
+from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
+from tilenca.emulator import Array, EmulatedTile, LinkFault
+from tilenca.protocol.board_test import board_test_text
+from tilenca.protocol.line_reader import LineReader
 
 SIDES = (NORTH, EAST, SOUTH, WEST)
 STEP_S = 0.002

@@ -1,10 +1,10 @@
 """EEPROM, ADC, self-made faults, and what is not modelled."""
 
 import pytest
-from conftest import Compile, words
 
+from support.avr import Compile, words
+from tilenca.base.errors import TilencaError
 from tilenca.emulator import Array
-from tilenca.errors import TilencaError
 
 
 def test_an_eeprom_write_takes_its_time_and_lasts(avr: Compile) -> None:

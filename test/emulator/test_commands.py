@@ -4,13 +4,14 @@ import itertools
 import random
 
 import pytest
-from conversation import Talk
 
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
-from tilenca.glyphs import GLYPHS, label_of_glyph
-from tilenca.ihex import firmware_id, parse_hex
-from tilenca.paths import FIRMWARE_ELF
-from tilenca.protocol import (
+from support.conversation import Talk
+from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
+from tilenca.emulator import Array
+from tilenca.fleet.image import firmware_id, parse_hex
+from tilenca.protocol.commands import ask_command, blink_command, restart_command, set_command
+from tilenca.protocol.sentences import (
     AckSentence,
     ErrorSentence,
     HelloSentence,
@@ -18,14 +19,10 @@ from tilenca.protocol import (
     NakSentence,
     TileSentence,
     TimeSentence,
-    ask_command,
-    blink_command,
     framed,
-    parse_settings,
-    restart_command,
-    set_command,
-    settings_block,
 )
+from tilenca.protocol.settings import parse_settings, settings_block
+from tilenca.shapes.glyphs import GLYPHS, label_of_glyph
 
 DARK, ALL = 0, GLYPHS["8"]
 

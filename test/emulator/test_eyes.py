@@ -5,10 +5,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from conftest import Compile
 
-from tilenca.emulator import EAST, SOUTH, WEST, Array, Waveforms
-from tilenca.errors import UsageError
+from support.avr import Compile
+from tilenca.base.errors import UsageError
+from tilenca.base.sides import EAST, SOUTH, WEST
+from tilenca.emulator import Array, Waveforms
 
 TALKER = """
 static void put(uint8_t c) { while (!(UCSR1A & 0x20)) { } UDR1 = c; }

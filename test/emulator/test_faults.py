@@ -1,239 +1,244 @@
-"""What happens to arrays: clocks that drift, tiles that come and go, cables that fail, threads."""
+"""`tilenca emulate` with faults, threads, kept EEPROMs, waveforms and debuggers, on the real firmware."""
 
-from itertools import pairwise
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
 
 import pytest
-from conftest import Compile, words
 
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array, EmulatedTile, LinkFault
-from tilenca.errors import UsageError
-
-# Sends a byte a millisecond to the east, counting up, and keeps what comes from the west.
-TALKER = """
-static volatile uint8_t heard[256];
-static volatile uint16_t count, wrong;
-ISR(USART3_RX_vect) { wrong += UCSR3A >> 4 & 1; heard[(uint8_t)count++] = UDR3; }
-int main(void) {
-    UBRR1 = UBRR3 = 16; UCSR1A = UCSR3A = 2; UCSR1B = 8; UCSR3B = 0x90;
-    sei();
-    for (uint8_t n = 0;; n++) { _delay_us(990); UDR1 = n; }
-}
-"""
+from tilenca import cli
+from tilenca.base.paths import FIRMWARE_ELF
 
 
-def pair(elf: object, **options: object) -> Array:
-    return Array(str(elf), 2, [(0, EAST, 1, WEST)], **options)  # type: ignore[arg-type]
+@pytest.fixture(autouse=True)
+def firmware() -> None:
+    assert FIRMWARE_ELF.exists(), f"{FIRMWARE_ELF} is missing: run `pio run` before these tests"
 
 
-def heard(tile: EmulatedTile) -> list[int]:
-    """What came, in order; up to 256 bytes."""
-    return list(tile.variable("heard")[: tile.integer("count")])
+def emulate(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    """Exit status, stdout, stderr."""
+    try:
+        status = cli.main(["emulate", "--shape", "1", *map(str, arguments)])
+    except SystemExit as ended:
+        status = int(ended.code or 0)
+    said = capsys.readouterr()
+    return status, said.out, said.err
 
 
-def everything(array: Array) -> list[object]:
-    return [(tile.cycles, tile.pc, tile.read_memory(0, 0x2200)) for tile in array]
+def report(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(emulate(capsys, "--json", *arguments)[1])
+    del document["wall_s"]
+    return document
 
 
-# --- links ---
+def received(document: dict[str, Any]) -> list[int]:
+    return [tile["frames"]["received"] for tile in document["tiles"]]
 
 
-def test_a_byte_on_its_way_is_late_by_the_delay(avr: Compile) -> None:
-    elf = avr(TALKER)
-    arrival = []
-    for delay_s in (0.0, 0.0005):
-        array = pair(elf)
-        array.set_fault(0, EAST, LinkFault(delay_s=delay_s))
-        tap = array[1].probe("J", 0)
-        array.run(0.01)
-        arrival.append(tap.read()[0].time_s)
-        assert heard(array[1]) == list(range(9))
-    assert arrival[1] - arrival[0] == pytest.approx(0.0005, abs=1e-7)
+SECONDS = ("--seconds", "3", "--boot-spread", "0", "--period-ms", "100")
 
 
-def test_lost_bytes_are_missing_and_all_others_whole(avr: Compile) -> None:
-    array = pair(avr(TALKER))
-    array.set_fault(0, EAST, LinkFault(loss=0.2), seed=3)
-    array.run(0.2005)
-    counts, came = array.fault_counts(0, EAST), heard(array[1])
-    assert counts.bytes in range(200, 204)
-    assert 20 <= counts.lost <= 60
-    assert len(came) == counts.bytes - counts.lost
-    assert all(a < b for a, b in pairwise(came))
-    assert array[1].integer("wrong") == 0
+def test_a_loss_of_all_bytes_in_one_direction_leaves_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+    whole, spoilt = report(capsys, *SECONDS), report(capsys, *SECONDS, "--fault", "loss=1@2S")
+    before, after = received(whole), received(spoilt)
+    # Tile 3 hears nothing from tile 2, and all of tile 4.
+    assert after[2] in range(before[2] // 2 - 3, before[2] // 2 + 4)
+    assert after[:2] == before[:2]
+    assert after[3:] == before[3:]
 
 
-def test_flipped_bits_are_as_many_as_were_counted(avr: Compile) -> None:
-    array = pair(avr(TALKER))
-    array.set_fault(0, EAST, LinkFault(flip=0.05), seed=5)
-    array.run(0.2005)
-    counts, came = array.fault_counts(0, EAST), heard(array[1])
-    differences = [value ^ number for number, value in enumerate(came)]
-    assert len(came) == counts.bytes  # none is lost, and framing holds
-    assert sum(bin(difference).count("1") for difference in differences) == counts.flipped
-    assert 40 <= counts.flipped <= 120
-    assert array[1].integer("wrong") == 0
+def test_flipped_bits_make_corrupt_frames(capsys: pytest.CaptureFixture[str]) -> None:
+    spoilt = report(capsys, *SECONDS, "--fault", "flip=0.002")
+    assert sum(tile["frames"]["corrupt"] for tile in spoilt["tiles"]) > 20
+    assert all(tile["updates"] >= 25 for tile in spoilt["tiles"])
 
 
-def test_one_direction_fails_alone(avr: Compile) -> None:
-    array = Array(avr(TALKER), 2, [(0, EAST, 1, WEST), (1, EAST, 0, WEST)])
-    array.set_fault(0, EAST, LinkFault(loss=1.0))
-    array.run(0.05)
-    assert heard(array[1]) == []
-    assert len(heard(array[0])) >= 48
+def test_a_cable_cut_for_a_while_costs_the_frames_of_that_while(capsys: pytest.CaptureFixture[str]) -> None:
+    before = received(report(capsys, *SECONDS))
+    after = received(report(capsys, *SECONDS, "--fault", "cut@1-2:1-2"))
+    assert before[0] - after[0] in range(8, 13)
+    assert after[2:] == before[2:]
 
 
-def test_a_software_line_is_spoilt_at_the_rate_of_the_other_end(avr: Compile) -> None:
-    # The south side is no USART: here a program toggles PK7 by hand; the northern neighbour has USART 2.
-    source = """
-    static volatile uint8_t heard[256];
-    static volatile uint16_t count;
-    ISR(USART2_RX_vect) { heard[(uint8_t)count++] = UDR2; }
-    static void put(uint8_t c) {
-        uint16_t bits = 0x600 | c << 1;                     /* and a bit of rest between two bytes */
-        for (uint8_t i = 0; i < 11; i++, bits >>= 1) {
-            if (bits & 1) PORTK |= 0x80; else PORTK &= 0x7F;
-            _delay_us(26);
-        }
-    }
-    int main(void) {
-        PORTK = 0x80; DDRK = 0x80; UBRR2 = 51; UCSR2A = 2; UCSR2B = 0x90; sei();
-        for (uint8_t n = 0; n < 100; n++) put(n);
-        for (;;) { }
-    }"""
-    array = Array(avr(source), 2, [(0, SOUTH, 1, NORTH)])
-    array.set_fault(0, SOUTH, LinkFault(loss=0.3), seed=1)
-    array.run(0.05)
-    counts = array.fault_counts(0, SOUTH)
-    assert counts.bytes == 100
-    assert len(heard(array[1])) == 100 - counts.lost
-    assert 15 <= counts.lost <= 45
+def test_a_tile_without_power_is_not_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = emulate(capsys, *SECONDS, "--fault", "off@5:1")
+    assert status == 0
+    assert "1: all 4 tiles show 1" in out
+    off = report(capsys, *SECONDS, "--fault", "remove@5:1")["tiles"][4]
+    assert (off["shown"], off["updates"]) == ("", 8)
+
+
+def test_a_tile_that_is_switched_on_again_counts_from_there(capsys: pytest.CaptureFixture[str]) -> None:
+    document = report(
+        capsys, "--updates", "20", "--period-ms", "100", "--boot-spread", "0", "--fault", "off@3:1-1.5"
+    )
+    assert document["all_right"]
+    assert document["tiles"][2]["updates"] in (20, 21)
+    assert document["simulated_s"] == pytest.approx(3.65, abs=0.1)
+    assert 0 < document["agreed_at_update"] <= 20
+    again = report(
+        capsys, "--updates", "20", "--period-ms", "100", "--boot-spread", "0", "--fault", "reset@3:1.5"
+    )
+    assert again["simulated_s"] == pytest.approx(3.65, abs=0.1)
+
+
+@pytest.mark.parametrize("fault", ["loss=0.02", "delay=3", "drift=50", "adc=2"])
+def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, fault: str
+) -> None:
+    documents, records = [], []
+    for threads, seed in ((1, 3), (2, 3), (2, 4)):
+        record = tmp_path / f"{threads}-{seed}.jsonl"
+        options = ("--threads", threads, "--seed", seed, "--fault", fault, "--record", record)
+        documents.append(report(capsys, "--seconds", "1.5", *options))
+        records.append(record.read_text())
+    assert documents[0] == documents[1]
+    assert records[0] == records[1]
+    assert records[1] != records[2]
+
+
+BROKEN_OFF = (("=", "loss="), ("@", "reset@1:-1"), ("@", "off@1:0-"), ("@", "cut@"))
 
 
 @pytest.mark.parametrize(
-    "fault", [LinkFault(loss=1.5), LinkFault(flip=-0.1), LinkFault(delay_s=2.0), LinkFault(baud=-1.0)]
+    ("spec", "fact"),
+    [
+        ("bang", "it begins with none of loss, flip, delay"),
+        ("loss", "loss takes a number"),
+        ("cut=1@1-2", "cut takes no number"),
+        ("loss=x", "'x' is no number"),
+        ("loss=-1", "'-1' is no number"),
+        ("loss=nan", "'nan' is no number"),
+        ("flip=1.5", "flip is 0 to 1"),
+        ("cut", "cut needs a place"),
+        ("cut@1-3", "no cable there"),
+        ("cut@9", "no tile '9'; they are 1 to 5"),
+        ("off@0:1", "no tile '0'"),
+        ("loss=1@1N", "no cable there"),
+        ("cut@1-2:3-2", "it ends before it begins"),
+        ("reset@1:1-2", "reset has no end"),
+        ("cut@1-2:soon", "'soon' is no time in seconds"),
+        ("losses=1", "it begins with none of loss, flip, delay"),
+        *((spec, f"after {spec.partition(mark)[0]} comes [=VALUE]") for mark, spec in BROKEN_OFF),
+    ],
 )
-def test_faults_out_of_range_are_refused(avr: Compile, fault: LinkFault) -> None:
-    with pytest.raises(UsageError, match="loss and flip are 0 to 1"):
-        pair(avr(TALKER)).set_fault(0, EAST, fault)
+def test_a_fault_that_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], spec: str, fact: str) -> None:
+    status, out, err = emulate(capsys, "--fault", spec)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert f"--fault '{spec}': {fact}" in err
 
 
-# --- cables and tiles while they run ---
+def test_an_eeprom_outlives_the_run(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    directory = tmp_path / "eeprom"
+    report(capsys, "--seconds", "0.2", "--period-ms", "250", "--eeprom", directory)
+    files = sorted(path.name for path in directory.iterdir())
+    assert files == [f"tile-0{n}.eeprom" for n in range(1, 6)]
+    assert all((directory / name).stat().st_size == 4096 for name in files)
+    # The period of the first run is still there.
+    slow = report(capsys, "--seconds", "3", "--boot-spread", "0", "--eeprom", directory)
+    assert all(tile["updates"] in (11, 12) for tile in slow["tiles"])
+    (directory / "tile-03.eeprom").write_bytes(b"short")
+    status, _, err = emulate(capsys, "--eeprom", directory)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "tile-03.eeprom: 5 bytes, an EEPROM has 4096; delete it" in err
 
 
-def test_a_cut_cable_is_silent_until_it_is_mended(avr: Compile) -> None:
-    array = pair(avr(TALKER))
-    array.run(0.0205)
-    before = len(heard(array[1]))
-    array.cut(0, EAST)
-    array.run(0.020)
-    assert len(heard(array[1])) <= before + 1
-    array.mend(1, WEST)
-    array.run(0.020)
-    came = heard(array[1])
-    assert len(came) in (2 * before - 1, 2 * before, 2 * before + 1)
-    assert came[-1] - came[before - 2] >= 2 * 19
+def test_waveforms_of_chosen_pins_are_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "waves.vcd"
+    report(capsys, "--seconds", "0.5", "--boot-spread", "0", "--vcd", path, "--pin", "2:K7", "--pin", "3:PH1")
+    text = path.read_text()
+    assert "$scope module tile2 $end\n$var wire 1 ! PK7 $end" in text
+    assert '$scope module tile3 $end\n$var wire 1 " PH1 $end' in text
+    assert len(re.findall(r"^[01]!$", text, re.MULTILINE)) > 50
+    report(capsys, "--seconds", "0.05", "--vcd", path)
+    assert path.read_text().count("$var") == 5 * 4
 
 
-def test_a_cable_is_taken_away_and_laid_elsewhere(avr: Compile) -> None:
-    array = Array(avr(TALKER), 3, [(0, EAST, 1, WEST)])
-    array.run(0.010)
-    with pytest.raises(UsageError, match="cable already"):
-        array.link(0, EAST, 2, WEST)
-    array.unlink(1, WEST)
-    with pytest.raises(UsageError, match="no cable at side 1 of tile 0"):
-        array.cut(0, EAST)
-    array.link(0, EAST, 2, WEST)
-    array.run(0.010)
-    assert len(heard(array[1])) in (8, 9, 10)
-    assert len(heard(array[2])) in (9, 10)
+def test_frames_on_every_cable_are_written_both_ways(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "frames.jsonl"
+    document = report(capsys, *SECONDS, "--frames", path)
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    assert set(lines[0]) == {"time", "tile", "side", "frame"}
+    assert [line["time"] for line in lines] == sorted(line["time"] for line in lines)
+    for tile in document["tiles"]:
+        neighbours = 1 if tile["id"] in (1, 5) else 2
+        sent = [line for line in lines if line["tile"] == tile["id"]]
+        assert {line["side"] for line in sent} == {
+            side for side, there in (("N", tile["id"] > 1), ("S", tile["id"] < 5)) if there
+        }
+        # Of four sides each frame is counted once; one may be on its way.
+        assert len(sent) in range(tile["frames"]["sent"] // 4 * neighbours - 2, tile["frames"]["sent"])
+    assert len({line["frame"] for line in lines}) > 50
 
 
-def test_a_tile_is_added_and_another_removed_while_they_run(avr: Compile) -> None:
-    array = Array(avr(TALKER), 2, [(0, EAST, 1, WEST)])
-    array.run(0.010)
-    added = array.add_tile(ppm=100)
-    array.link(1, EAST, added.index, WEST)
-    array.run(0.010)
-    assert len(heard(added)) in (8, 9, 10)
-    array.remove_tile(1)
-    array.run(0.010)
-    assert len(heard(added)) in (8, 9, 10, 11)
-    assert not array[1].powered
-    assert len(array) == 3
-    assert added.cycles[0] == pytest.approx(320_000, abs=2000)
+@pytest.mark.parametrize(
+    ("options", "fact"),
+    [
+        (("--vcd", "x", "--pin", "3:I1"), "--pin 3:I1: not a tile and a pin; for example 3:H1"),
+        (("--vcd", "x", "--pin", "9:H1"), "--pin 9:H1: no tile 9; shape '1' has 1 to 5"),
+        (("--pin", "1:H1"), "--pin does nothing without --vcd"),
+        (("--gdb", "6"), "--gdb 6: no tile 6"),
+        (("--gdb", "x"), "--gdb x: not a tile and a port"),
+        (("--vcd", "/nowhere/x.vcd", "--seconds", "0.01"), "/nowhere/x.vcd: No such file or directory; give"),
+        (("--vcd", "x", "--shape", "4"), "--vcd needs one shape, got 2"),
+        (("--frames", "/nowhere/x", "--seconds", "0.01"), "/nowhere/x: No such file or directory; give"),
+        (("--threads", "0"), "'0' is not a whole number from 1"),
+    ],
+)
+def test_what_cannot_be_looked_at_is_one_line(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...], fact: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    status, out, err = emulate(capsys, *options)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert fact in err
 
 
-def test_a_neighbour_without_power_says_nothing_and_starts_anew(avr: Compile) -> None:
-    array = pair(avr(TALKER))
-    array.run(0.0101)
-    array[0].powered = False
-    array.run(0.010)
-    before = len(heard(array[1]))
-    array.run(0.010)
-    assert len(heard(array[1])) == before
-    array[0].powered = True
-    array.run(0.010)
-    assert heard(array[1])[before:] == list(range(9))
+def test_a_debugger_is_waited_for_and_then_obeyed() -> None:
+    command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shape", "1", "--seconds", "0.5", "--json"]
+    with subprocess.Popen(
+        [*command, "--gdb", "4"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as running:
+        assert running.stderr is not None
+        line = running.stderr.readline()
+        port = re.search(r"tile 4 waits for: avr-gdb -ex 'target remote :(\d+)'", line)
+        assert port, line
+        with socket.create_connection(("127.0.0.1", int(port[1])), 60) as debugger:
+            debugger.sendall(b"$?#3f")
+            answer = b""
+            while not answer.endswith(b"#b8"):
+                answer += debugger.recv(100)
+            assert answer == b"+$S05#b8"
+            debugger.sendall(b"$c#63")
+            out, _ = running.communicate(timeout=60)
+    assert running.returncode in (0, 1)
+    assert json.loads(out)["simulated_s"] == 0.5
 
 
-# --- clocks ---
-
-
-def test_a_drifting_clock_gains_with_the_square_of_time(avr: Compile) -> None:
-    array = Array(avr("int main(void) { for (;;) { } }"), 2)
-    array[1].set_drift(100.0)
-    array.run(2.0)
-    gained = array[1].cycles[0] - array[0].cycles[0]
-    # Half of 100 ppm/s times (2 s)^2 is 200 us; the rate grows in steps of 65.5 ms, half a step late.
-    assert gained == pytest.approx(16 * (200 - 2 * 100 * 0.0655 / 2), abs=20)
-
-
-def test_drift_does_not_depend_on_how_time_is_sliced(avr: Compile) -> None:
-    elf = avr(TALKER)
-    arrays = [pair(elf, ppm=[500, -500]) for _ in range(2)]
-    for array, slices in zip(arrays, (1, 97), strict=True):
-        array[0].set_drift(1000.0)
-        array[1].set_drift(-3000.0)
-        for _ in range(slices):
-            array.run(0.3 / slices)
-    assert everything(arrays[0]) == everything(arrays[1])
-
-
-# --- threads ---
-
-
-def spoilt(elf: object, threads: int) -> Array:
-    links = [(tile, EAST, tile + 1, WEST) for tile in range(6)]
-    ppm = [300.0 * tile - 900 for tile in range(7)]
-    array = Array(str(elf), 7, links, ppm, [0.001 * tile for tile in range(7)], threads=threads)
-    for tile in range(6):
-        array.set_fault(tile, EAST, LinkFault(loss=0.1, flip=0.01, delay_s=0.0001 * tile), seed=tile)
-    array[3].set_drift(50.0)
-    return array
-
-
-@pytest.mark.parametrize("threads", [2, 3, 8])
-def test_threads_change_no_byte(avr: Compile, threads: int) -> None:
-    elf = avr(TALKER)
-    one, many = spoilt(elf, 1), spoilt(elf, threads)
-    for array in (one, many):
-        array.run(0.05)
-        array.cut(2, EAST)
-        array[4].powered = False
-        array.run(0.02)
-        array[4].powered = True
-        array.mend(2, EAST)
-        array.run(0.05)
-    assert everything(one) == everything(many)
-    assert one.save() == many.save()
-    assert sum(len(heard(tile)) for tile in one) > 400
-
-
-def test_a_hundred_tiles_run(avr: Compile) -> None:
-    side = 10
-    links = [(n, EAST, n + 1, WEST) for n in range(side * side) if n % side != side - 1]
-    links += [(n, SOUTH, n + side, NORTH) for n in range(side * (side - 1))]
-    array = Array(avr(TALKER), side * side, links, threads=2)
-    array.run(0.02)
-    assert all(len(heard(tile)) in (18, 19, 20) for tile in array if tile.index % side)
-    assert words(array[0].variable("count")) == [0]
+@pytest.mark.parametrize("with_debugger", [False, True])
+@pytest.mark.parametrize("look", [(), ("--watch",)])
+def test_an_interrupt_ends_the_wait_for_a_debugger(with_debugger: bool, look: tuple[str, ...]) -> None:
+    command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shape", "1", "--gdb", "4", *look]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        port = re.search(r":(\d+)'", running.stderr.readline())
+        assert port
+        with ExitStack() as stack:
+            if with_debugger:
+                debugger = stack.enter_context(socket.create_connection(("127.0.0.1", int(port[1])), 60))
+                debugger.sendall(b"$?#3f")
+                assert debugger.recv(1) == b"+"
+            running.send_signal(signal.SIGINT)
+            _, err = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert err.splitlines()[-1] == "tilenca: interrupted"
+    assert "Traceback" not in err

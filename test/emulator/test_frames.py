@@ -1,9 +1,10 @@
 """Every frame format of the USARTs, from one tile to another, and what happens when the two differ."""
 
 import pytest
-from conftest import Compile, words
 
-from tilenca.emulator import EAST, WEST, Array
+from support.avr import Compile, words
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator import Array
 
 # Tile 0 sends eight words to tile 1; each has its own format.
 SPEAKER = """

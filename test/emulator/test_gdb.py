@@ -10,11 +10,12 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from conftest import Compile
 
-from tilenca.emulator import EAST, WEST, Array
-from tilenca.emulator_gdb import GdbPort
-from tilenca.errors import TilencaError, UsageError
+from support.avr import Compile
+from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator import Array
+from tilenca.emulator.gdb import GdbPort
 
 TIMEOUT_S = 60.0
 

@@ -9,15 +9,17 @@ from collections import Counter
 from collections.abc import Iterable
 
 import pytest
-from vandals import Edges, Vandal, bursts, noise, random_bytes
 
-from soak import Ledger, checkerboard
-from tilenca import paths
-from tilenca.emulation import cables, firmware_settings
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array, Link, LinkFault, ResetCause
-from tilenca.glyphs import label_of_glyph
-from tilenca.protocol import LINK_BAUD, settings_block
-from tilenca.shapes import load_task
+from bench.soak import Ledger, checkerboard
+from support.line_faults import Edges, Vandal, bursts, noise, random_bytes
+from tilenca.base import paths
+from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
+from tilenca.emulator import Array, Link, LinkFault, ResetCause
+from tilenca.emulator.experiment import cables, firmware_settings
+from tilenca.protocol.constants import LINK_BAUD
+from tilenca.protocol.settings import settings_block
+from tilenca.shapes.file import load_task
+from tilenca.shapes.glyphs import label_of_glyph
 
 pytestmark = pytest.mark.soak
 

@@ -9,13 +9,16 @@ from itertools import permutations
 
 import pytest
 
-from tilenca import paths
-from tilenca.emulation import cables
+from tilenca.base import paths
+from tilenca.base.sides import STEPS
 from tilenca.emulator import Array
-from tilenca.glyphs import label_of_glyph
-from tilenca.protocol import LinkSentence, TileSentence, settings_block
-from tilenca.shapes import STEPS, Shape, connected, load_task
-from tilenca.telemetry import LineReader
+from tilenca.emulator.experiment import cables
+from tilenca.protocol.line_reader import LineReader
+from tilenca.protocol.sentences import LinkSentence, TileSentence
+from tilenca.protocol.settings import settings_block
+from tilenca.shapes.cells import connected
+from tilenca.shapes.file import Shape, load_task
+from tilenca.shapes.glyphs import label_of_glyph
 
 SEED = 5
 PERIOD_MS = 20  # what tiles come with

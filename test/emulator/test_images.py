@@ -7,11 +7,11 @@ from ctypes import CDLL, c_char, c_char_p, c_double, c_int, c_uint, c_uint64, c_
 from pathlib import Path
 
 import pytest
-from conftest import Compile, hex_record, run_tool
 
+from support.avr import Compile, hex_record, run_tool
+from tilenca.base.errors import BuildError, TilencaError, UsageError
+from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.emulator import LIBRARY, Array
-from tilenca.errors import BuildError, TilencaError, UsageError
-from tilenca.paths import FIRMWARE_ELF
 
 PROGRAM = "EEMEM uint8_t stored = 0x42; int main(void) { result[0] = 7; for (;;) { } }"
 

@@ -1,8 +1,8 @@
 """Interrupts, pins, sleep and the watchdog."""
 
 import pytest
-from conftest import Compile, words
 
+from support.avr import Compile, words
 from tilenca.emulator import Array, EmulatedTile
 
 

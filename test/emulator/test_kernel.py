@@ -5,22 +5,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import bench_kernel
-import kernel
-import stack
-from disassembly import disassemble, parse
-from networks import random_network, uniform_network
-from tilenca import fit, passes
+from bench import kernel
+from firmware import kernel_program, stack
+from firmware.disassembly import disassemble, parse
+from firmware.synthetic_models import random_network, uniform_network
+from tilenca.base.paths import ROOT
 from tilenca.emulator import Array, EmulatedTile
-from tilenca.modelfile import Dimensions, Model, load_model
-from tilenca.paths import ROOT
+from tilenca.model import cost, packing
+from tilenca.model.file import Dimensions, Model, load_model
 
 DRIVER = Path(__file__).with_name("kernel.cpp")
 MOST_S = 200
 
 
 def run(model: Model, folder: Path, vectors: int, *options: str) -> EmulatedTile:
-    elf = kernel.program(model, DRIVER, folder, f"-DVECTORS={vectors}", *options)
+    elf = kernel_program.program(model, DRIVER, folder, f"-DVECTORS={vectors}", *options)
     array = Array(elf)
     for _ in range(MOST_S):
         array.run(1.0)
@@ -74,10 +73,10 @@ def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(
         )
         upward = np.arange(len(biases)) % 2 == 0
         most, least = 127 * high.sum(axis=1, dtype=int), 127 * low.sum(axis=1, dtype=int)
-        rounding = passes.ROUNDING if layer < 3 else 0
+        rounding = packing.ROUNDING if layer < 3 else 0
         biases[:] = np.clip(np.where(upward, 32767 - most, -32768 - least) - rounding, -32768, 32767)
     for layer in (1, 2, 3):
-        parts = passes.passes(model, layer)
+        parts = packing.passes(model, layer)
         assert all(part.narrow for part in parts)
         assert max(part.most for part in parts) == 32767
         assert min(part.least for part in parts) == -32768
@@ -94,10 +93,10 @@ def test_passes_of_both_kinds_take_turns(first: int, tmp_path: Path) -> None:
     """Within a layer, and within a call."""
     model = random_network(Dimensions(21, 40, 40), 127, 100)
     for layer in (1, 2, 3):
-        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // passes.PASS_OUTPUTS % 2 == first
+        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // packing.PASS_OUTPUTS % 2 == first
         model.integer[f"w{layer}"][is_narrow] //= 64
-        kinds = [part.narrow for part in passes.passes(model, layer)]
-        assert kinds == list(is_narrow[:: passes.PASS_OUTPUTS])
+        kinds = [part.narrow for part in packing.passes(model, layer)]
+        assert kinds == list(is_narrow[:: packing.PASS_OUTPUTS])
     tile = run(model, tmp_path, 1000)
     assert tile.integer("wide_passes") > 0
     assert tile.integer("differences") == 0
@@ -140,27 +139,27 @@ def test_the_shipped_model_on_the_chip_is_numpy(tmp_path: Path) -> None:
 
 
 def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
-    elf = kernel.program(random_network(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
+    elf = kernel_program.program(random_network(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
     listing = parse(disassemble(elf))
     found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_passes"])
     assert found + stack.RETURN_ADDRESS == 33
 
 
-@pytest.mark.parametrize("width", bench_kernel.WIDTHS)
+@pytest.mark.parametrize("width", kernel.WIDTHS)
 def test_cycles_of_a_forward_pass_without_a_zero(width: int) -> None:
     size = Dimensions(21, width, width)
-    found = bench_kernel.measure(bench_kernel.any_model(size, narrow=False), bench_kernel.dense(size))
-    assert found.assembly <= 9.7 * fit.macs(size)
-    found = bench_kernel.measure(bench_kernel.any_model(size, narrow=True), bench_kernel.dense(size))
-    assert found.assembly <= 8.2 * fit.macs(size)
-    half = bench_kernel.any_model(size, narrow=True, zeros=True)
-    found = bench_kernel.measure(half, bench_kernel.dense(size, zeros=True))
-    assert found.assembly <= 5 * fit.macs(size)
+    found = kernel.measure(kernel.any_model(size, narrow=False), kernel.dense(size))
+    assert found.assembly <= 9.7 * cost.macs(size)
+    found = kernel.measure(kernel.any_model(size, narrow=True), kernel.dense(size))
+    assert found.assembly <= 8.2 * cost.macs(size)
+    half = kernel.any_model(size, narrow=True, zeros=True)
+    found = kernel.measure(half, kernel.dense(size, zeros=True))
+    assert found.assembly <= 5 * cost.macs(size)
 
 
-@pytest.mark.parametrize("steps", [bench_kernel.STEPS_YOUNG, bench_kernel.STEPS_SETTLED])
+@pytest.mark.parametrize("steps", [kernel.STEPS_YOUNG, kernel.STEPS_SETTLED])
 @pytest.mark.parametrize("name", ["digits", "paper"])
 def test_cycles_of_a_forward_pass_in_a_tissue(name: str, steps: int) -> None:
     model = load_model(ROOT / "models" / name)
-    found = bench_kernel.measure(model, bench_kernel.tissue(model, steps))
-    assert found.assembly <= 6.3 * fit.macs(model.dimensions)
+    found = kernel.measure(model, kernel.tissue(model, steps))
+    assert found.assembly <= 6.3 * cost.macs(model.dimensions)

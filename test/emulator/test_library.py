@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from conftest import ROOT, Compile, run_tool
+from support.avr import ROOT, Compile, run_tool
 
 SOURCES = ROOT / "tools" / "emulator" / "src"
 
@@ -52,7 +52,7 @@ def test_nothing_in_it_knows_of_networks_or_telemetry() -> None:
 
 
 def test_every_function_of_the_header_is_declared_in_python_with_as_many_arguments() -> None:
-    from tilenca.emulator_library import _SIGNATURES
+    from tilenca.emulator.library import _SIGNATURES
 
     header = (SOURCES / "capi.h").read_text()
     declared = {

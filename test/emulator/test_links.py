@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import run_tool
-from vandals import Edges, Vandal, noise, random_bytes
 
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
-from tilenca.paths import FIRMWARE
-from tilenca.protocol import LINK_BAUD, ROW_BAUD
+from support.avr import run_tool
+from support.line_faults import Edges, Vandal, noise, random_bytes
+from tilenca.base.paths import FIRMWARE
+from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
+from tilenca.emulator import Array
+from tilenca.protocol.constants import LINK_BAUD, ROW_BAUD
 
 SIDES = (NORTH, EAST, SOUTH, WEST)
 BAUD = {NORTH: LINK_BAUD, EAST: ROW_BAUD, SOUTH: LINK_BAUD, WEST: ROW_BAUD}

@@ -4,22 +4,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import hex_record
-from conversation import Talk
 
-from tilenca.emulate_serve import STOCK_BOOTLOADER
-from tilenca.emulator import EAST, WEST, Array, ResetCause
-from tilenca.frames import Frame, encode_frame
-from tilenca.paths import FIRMWARE_ELF
-from tilenca.protocol import (
-    LINK_BAUD,
-    ErrorSentence,
-    HelloSentence,
-    LinkSentence,
-    TileSentence,
-    TimeSentence,
-    settings_block,
-)
+from support.avr import hex_record
+from support.conversation import Talk
+from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator import Array, ResetCause
+from tilenca.emulator.serve import STOCK_BOOTLOADER
+from tilenca.protocol.constants import LINK_BAUD
+from tilenca.protocol.frames import Frame, encode_frame
+from tilenca.protocol.sentences import ErrorSentence, HelloSentence, LinkSentence, TileSentence, TimeSentence
+from tilenca.protocol.settings import settings_block
 
 CLOCK = 16_000_000
 BOOTLOADER_AT, RAM_END = 0x3E000, 0x2200

@@ -5,10 +5,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from conftest import hex_record
 
+from support.avr import hex_record
+from tilenca.base.errors import TilencaError
 from tilenca.emulator import Array, LinkFault
-from tilenca.errors import TilencaError
 
 WORDS = 1500
 REGISTERS = [

@@ -3,8 +3,8 @@
 from itertools import pairwise
 
 import pytest
-from conftest import Compile, words
 
+from support.avr import Compile, words
 from tilenca.emulator import Array, EmulatedTile
 
 

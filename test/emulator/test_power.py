@@ -1,8 +1,8 @@
 """Sleep modes, power reduction, the clock prescaler, resets, and power itself."""
 
 import pytest
-from conftest import Compile, words
 
+from support.avr import Compile, words
 from tilenca.emulator import Array, ResetCause
 
 # Sleeps in MODE while timer 1 counts cycles; a pin change on PK7 wakes it.

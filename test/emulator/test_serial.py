@@ -3,9 +3,10 @@
 from itertools import pairwise
 
 import pytest
-from conftest import Compile, words
 
-from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
+from support.avr import Compile, words
+from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
+from tilenca.emulator import Array
 
 SERIAL = """
 static inline void open0(uint16_t ubrr) { UCSR0A = 2; UBRR0 = ubrr; UCSR0C = 6; UCSR0B = 0x18; }

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import Compile, run_tool
 
-from tilenca.emulate_serve import STOCK_BOOTLOADER
+from support.avr import Compile, run_tool
+from tilenca.emulator.serve import STOCK_BOOTLOADER
 
 TIMEOUT_S = 60.0
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Compile, compile_differential, run_tool
+
+from support.avr import ROOT, Compile, compile_differential, run_tool
 
 SPEAK = """
 #include <avr/boot.h>

@@ -4,11 +4,12 @@ import random
 from pathlib import Path
 
 import pytest
-from conftest import Compile
 
-from tilenca.emulator import EAST, WEST, Array, LinkFault
-from tilenca.emulator_history import History
-from tilenca.errors import UsageError
+from support.avr import Compile
+from tilenca.base.errors import UsageError
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator import Array, LinkFault
+from tilenca.emulator.history import History
 
 # Everything that holds state is in use: timers, USARTs, EEPROM, ADC, SPI, TWI, the watchdog, sleep, the heap.
 BUSY = """

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-import cycles
-import soak
+from bench import soak
+from firmware import cost_fit
 
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return cycles.build(soak.small_model(), tmp_path_factory.mktemp("small"))
+    return cost_fit.build(soak.small_model(), tmp_path_factory.mktemp("small"))
 
 
 @pytest.mark.soak

@@ -1,4 +1,4 @@
-// The simulator behind a C interface, for models of any size: host/tilenca/native.py and tissue.py call it.
+// The simulator behind a C interface, for models of any size: host/tilenca/simulator/core_library.py and tissue.py call it.
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>

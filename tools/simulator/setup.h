@@ -1,4 +1,4 @@
-// What the tiles of a tissue are and have to live with. The C face of host/tilenca/tissue.py.
+// What the tiles of a tissue are and have to live with. The C face of host/tilenca/simulator/rollout_library.py.
 #pragma once
 
 #include <stdint.h>

@@ -1,4 +1,4 @@
-// Cells living through a schedule, and the gradient of where they end up: host/tilenca/rollout.py says what
+// Cells living through a schedule, and the gradient of where they end up: host/tilenca/training/rollout.py says what
 // this computes, in plain PyTorch. Here the whole life is one call, and nothing but real updates is computed.
 //
 // Compiled once for each kind of processor (LIFE_NAME differs); life_api.cpp picks one.

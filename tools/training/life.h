@@ -6,7 +6,7 @@
 
 namespace training {
 
-// Row-major [output][input], in the units of host/tilenca/model.py.
+// Row-major [output][input], in the units of host/tilenca/training/network.py.
 struct Net {
     int32_t channels;
     int32_t hidden1;

@@ -1,4 +1,4 @@
-// The C interface that host/tilenca/life.py calls: picks the code for this machine's processor.
+// The C interface that host/tilenca/training/rollout_kernel.py calls: picks the code for this machine's processor.
 #include "life.h"
 
 using namespace training;

@@ -1,4 +1,4 @@
-// Frames between tiles: docs/PROTOCOL.md section 1. Twin of host/tilenca/frames.py.
+// Frames between tiles: docs/PROTOCOL.md section 1. Twin of host/tilenca/protocol/frames.py.
 #pragma once
 
 #include <stdint.h>

@@ -1,4 +1,4 @@
-// Forward passes for tools/bench_kernel.py, which marks the functions: assembly, portable C++, float.
+// Forward passes for tools/bench/kernel.py, which marks the functions: assembly, portable C++, float.
 // The inputs are in given.h, as are, with FLOATS, the float weights, row-major.
 #include <avr/pgmspace.h>
 #include <string.h>

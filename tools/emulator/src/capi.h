@@ -1,4 +1,4 @@
-// The emulator as a C library: what host/tilenca/emulator.py calls. Times are in seconds since the array
+// The emulator as a C library: what host/tilenca/emulator/array.py calls. Times are in seconds since the array
 // began.
 //
 // Functions that can fail return null or a negative number, and tilenca_last_error says why in one line.

@@ -1,0 +1,1 @@
+"""What every room may use: errors, paths, standard streams, signals, the four sides."""

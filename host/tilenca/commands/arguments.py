@@ -1,0 +1,105 @@
+"""The command line's grammar that all commands share: the parser, and the types of its values."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+from tilenca.base.errors import UsageError
+from tilenca.base.stdio import warn
+from tilenca.fleet.tiles_file import DEFAULT
+from tilenca.shapes.sizes import Size, parse_size
+
+MAX_COUNT = 1_000_000
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, as all of ours."""
+
+    def error(self, message: str) -> NoReturn:
+        """Says what is wrong and where help is; exits with 2."""
+        warn(f"{self.prog}: {' '.join(message.split())}; see {self.prog} --help")
+        raise SystemExit(UsageError.exit_status)
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """Refuses what it does not know itself, so that the complaint names the subcommand."""
+        known, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}")
+        return known, unknown
+
+
+def number(lowest: float, highest: float = float("inf")) -> Callable[[str], float]:
+    """The type of a real number in `lowest`..`highest`; not a number and infinity are refused."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = float("nan")
+        if not lowest <= value <= highest or value == float("inf"):
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number {_range(lowest, highest)}")
+        return value
+
+    return parse
+
+
+def whole(lowest: int, highest: int = MAX_COUNT) -> Callable[[str], int]:
+    """The type of a whole number in `lowest`..`highest`."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = lowest - 1
+        if not lowest <= value <= highest:
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number {_range(lowest, highest)}")
+        return value
+
+    return parse
+
+
+def size(text: str) -> Size:
+    """The type of rows and columns, like 5x4."""
+    try:
+        return parse_size(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def _range(lowest: float, highest: float) -> str:
+    return f"from {_shown(lowest)}" + ("" if highest == float("inf") else f" to {_shown(highest)}")
+
+
+def _shown(limit: float) -> str:
+    return str(limit) if isinstance(limit, int) else f"{limit:.10g}"
+
+
+# A thousandth of a second is the least that means anything to a tile.
+positive = number(0.001)
+not_negative = number(0.0)
+count = whole(1)
+share = number(0.0, 1.0)
+seed = whole(0, 2**63 - 1)
+
+
+def add_port_argument(parser: argparse.ArgumentParser) -> None:
+    """The `--port` option that all fleet commands share."""
+    parser.add_argument(
+        "--port",
+        action="append",
+        default=[],
+        metavar="GLOB",
+        help="a port or a quoted pattern, such as '/dev/ttyACM*', repeatable (default: Mega 2560s on USB)",
+    )
+
+
+def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
+    """`--port` and `--tiles`, which all fleet commands share."""
+    add_port_argument(parser)
+    parser.add_argument(
+        "--tiles",
+        type=Path,
+        metavar="F",
+        help=f"which board is which tile (default: {DEFAULT}, if there is one)",
+    )

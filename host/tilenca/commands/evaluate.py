@@ -1,0 +1,272 @@
+"""`tilenca evaluate`: how well a model does on shapes."""
+
+import argparse
+import json
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.base import paths
+from tilenca.base.errors import BuildError, UsageError
+from tilenca.commands.arguments import count, seed, share, size
+from tilenca.evaluation.metrics import SETTLED, settle_times, validate
+from tilenca.evaluation.suites import Aims, set_exam
+from tilenca.model.file import Model, load_model
+from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
+from tilenca.shapes.file import load_task
+from tilenca.shapes.sizes import Size, size_name
+from tilenca.simulator.engine import Engine, FastEngine
+from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.views.table import table
+
+# Options that --exam has no use for, and their defaults.
+EXAM_SETS = {
+    "engine": "fast",
+    "schedule": "clock",
+    "steps": SETTLED,
+    "size": None,
+    "loss": 0.0,
+    "lost": "held",
+    "dead": 0.0,
+}
+RUNS = {"fast": 100, "float": 100, "emulator": 1}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was measured, one entry per run.
+
+    Attributes:
+        chosen: (R,) the drawing.
+        right: (R,) share of tiles that show the right class at the end.
+        settled: (R,) step from which all were right to the end; infinite for none.
+        lapsed: (R,) whether a tile was wrong after step 60, in runs longer than that.
+    """
+
+    chosen: NDArray[np.int64]
+    right: NDArray[np.float32]
+    settled: NDArray[np.float64]
+    lapsed: NDArray[np.bool_]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    parser.add_argument(
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
+    )
+    parser.add_argument(
+        "--shapes",
+        type=Path,
+        nargs="+",
+        default=[paths.DEFAULT_SHAPES],
+        metavar="F",
+        help="shape files (shapes/digits.toml)",
+    )
+    parser.add_argument(
+        "--engine",
+        choices=tuple(RUNS),
+        default="fast",
+        help="fast: the firmware's core on this machine; float: the PyTorch model; emulator: the ELF",
+    )
+    parser.add_argument(
+        "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles'"
+    )
+    parser.add_argument(
+        "--steps", type=count, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
+    )
+    parser.add_argument("--runs", type=count, metavar="N", help="runs per drawing (100; emulator: 1)")
+    parser.add_argument(
+        "--size",
+        type=size,
+        metavar="RxC",
+        help="stretch the drawings to so many rows and columns, like 9x7",
+    )
+    parser.add_argument(
+        "--exam",
+        action="store_true",
+        help="measure all that a model card shows: sizes, loss, damage, changes, unknown shapes, long runs",
+    )
+    parser.add_argument("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1")
+    parser.add_argument(
+        "--lost",
+        choices=("held", "zero"),
+        default="held",
+        help="a lost message reads as the last one, or as zero",
+    )
+    parser.add_argument(
+        "--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1"
+    )
+    parser.add_argument(
+        "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measures and prints."""
+    runs = RUNS[args.engine] if args.runs is None else args.runs
+    model = load_model(args.model)
+    if args.exam:
+        return _exam(args, model)
+    drawings = load_drawings(args.shapes, labels=model.labels)
+    if args.size is not None:
+        drawings = _at_size(drawings, args.size)
+    chosen = np.repeat(np.arange(len(drawings)), runs)
+    if args.engine == "emulator":
+        outcome = _emulate(args, model, drawings, chosen)
+    else:
+        conditions = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
+        random = np.random.default_rng(args.seed)
+        course = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random).run(args.steps)
+        lapsed = ~course.agreed[SETTLED - 1 :].all(axis=0) & (args.steps > SETTLED)
+        outcome = Outcome(chosen, course.right[-1], course.settled, lapsed)
+    report = _report(args, model, drawings, runs, outcome)
+    if args.json:
+        print(json.dumps(report))
+    else:
+        _print(report)
+    return 0
+
+
+def _exam(args: argparse.Namespace, model: Model) -> int:
+    """The card's measurements, which the same seed and number of runs repeat."""
+    for option, usual in EXAM_SETS.items():
+        if getattr(args, option) != usual:
+            raise UsageError(f"--exam sets its own conditions; leave --{option} out")
+    aims = _aims(model)
+    task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
+    exam = set_exam(task, sizes, model.labels, aims, args.seed)
+    say = (lambda _: None) if args.json else print
+    metrics = validate(FastEngine(model), exam, args.runs or RUNS["fast"], args.seed, say)
+    if args.json:
+        print(json.dumps({"model": f"{model.model_id:04X}", "metrics": metrics}))
+    else:
+        print(f"{metrics['targets_held']} targets held")
+    return 0
+
+
+def _aims(model: Model) -> Aims:
+    """What the model says it was trained for; nothing beyond its drawings where it does not say."""
+    recipe = model.made.get("recipe", {})
+    stretch, damaged, unknown = (
+        recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0))
+    )
+    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown)):
+        raise UsageError(f"model {model.model_id:04X}: made.recipe has no numbers in it; check out again")
+    return Aims(float(stretch), damaged > 0, unknown > 0)
+
+
+def _at_size(drawings: Drawings, wanted: Size) -> Drawings:
+    """The drawings that can be drawn at that size."""
+    found = [
+        (other, group)
+        for shape, group in zip(drawings.shapes, drawings.groups, strict=True)
+        if (other := shape.stretched(wanted)) is not None
+    ]
+    if not found:
+        raise UsageError(f"--size {size_name(wanted)}: no drawing can be drawn that small; give a larger one")
+    shapes, groups = zip(*found, strict=True)
+    return replace(drawings, shapes=shapes, groups=groups)
+
+
+def _engine(name: str, model: Model) -> Engine:
+    if name == "fast":
+        return FastEngine(model)
+    try:
+        from tilenca.training.float_engine import FloatEngine
+    except ImportError as error:
+        raise UsageError(
+            "--engine float needs PyTorch; use --engine fast, or run: make setup-train"
+        ) from error
+    return FloatEngine(model)
+
+
+def _emulate(
+    args: argparse.Namespace, model: Model, drawings: Drawings, chosen: NDArray[np.int64]
+) -> Outcome:
+    from tilenca.emulator.experiment import Conditions as Powering
+    from tilenca.emulator.experiment import Emulation, firmware_settings
+
+    if args.schedule != "clock" or args.loss or args.dead:
+        raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
+    if not paths.FIRMWARE_ELF.exists():
+        raise BuildError(f"{paths.FIRMWARE_ELF}: no firmware image; run `make demo` or `pio run`")
+    tasks = [load_task(path) for path in args.shapes]
+    defaults = firmware_settings(paths.FIRMWARE_ELF)
+    right, settled = [], []
+    for run, number in enumerate(chosen):
+        shape = drawings.shapes[number]
+        powering = Powering(updates=args.steps, seed=args.seed * 1000 + run)
+        tissue = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, powering, defaults)
+
+        def check(running: Emulation, _: list[Any]) -> None:
+            if running.hello is not None and running.hello.model_id != model.model_id:
+                raise BuildError(
+                    f"{paths.FIRMWARE_ELF}: carries model {running.hello.model_id:04X}, not "
+                    f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
+                )
+
+        with tissue.array:
+            tissue.run(check)
+            right.append(sum(tissue.shown(tile) == shape.label for tile in tissue.array) / len(shape.cells))
+            updates = tissue.agreed_at_update()
+        settled.append(math.inf if updates is None else max(updates, 1))
+    return Outcome(chosen, np.array(right, np.float32), np.array(settled), np.zeros(len(chosen), np.bool_))
+
+
+def _report(
+    args: argparse.Namespace, model: Model, drawings: Drawings, runs: int, outcome: Outcome
+) -> dict[str, Any]:
+    agreed = outcome.right >= 1.0
+    per_shape = []
+    for number, shape in enumerate(drawings.shapes):
+        mine = outcome.chosen == number
+        per_shape.append(
+            {
+                "label": shape.label,
+                "name": shape.name,
+                "file": drawings.sources[drawings.groups[number]]["file"],
+                "grid": shape.grid,
+                "cells_right": round(float(outcome.right[mine].mean()), 6),
+                "total_agreement": round(float(agreed[mine].mean()), 6),
+                "steps_to_agreement": settle_times(outcome.settled[mine]),
+            }
+        )
+    return {
+        "model": f"{model.model_id:04X}",
+        "engine": args.engine,
+        "schedule": args.schedule,
+        "steps": args.steps,
+        "runs": runs,
+        "cells_right": round(float(outcome.right.mean()), 6),
+        "total_agreement": round(float(agreed.mean()), 6),
+        "steps_to_agreement": settle_times(outcome.settled),
+        "runs_with_a_lapse": int(outcome.lapsed.sum()),
+        "per_shape": per_shape,
+    }
+
+
+def _print(report: dict[str, Any]) -> None:
+    def times(settle: dict[str, float | None]) -> list[str]:
+        return ["never" if value is None else f"{value:.0f}" for value in settle.values()]
+
+    def cells(name: str, file: str, row: dict[str, Any]) -> list[str]:
+        shares = f"{row['cells_right']:.4f}", f"{row['total_agreement']:.4f}"
+        return [name, file, *shares, *times(row["steps_to_agreement"])]
+
+    rows = [cells(row["name"], row["file"], row) for row in report["per_shape"]]
+    rows.append(cells("all", "", report))
+    print(
+        f"model {report['model']}, engine {report['engine']}, schedule {report['schedule']}: after "
+        f"{report['steps']} steps, {report['runs']} runs per shape; median and 95 %: steps until all tiles "
+        "are right and stay so"
+    )
+    print(table(("shape", "file", "cells right", "all right", "median", "95 %"), rows))

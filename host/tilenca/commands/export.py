@@ -1,0 +1,72 @@
+"""`tilenca export`: renders a model into the firmware's C++ files, or says what one would cost."""
+
+import argparse
+import json
+from pathlib import Path
+
+from tilenca.base import paths
+from tilenca.base.errors import TilencaError
+from tilenca.commands import export_plan
+from tilenca.model import cost, packing
+from tilenca.model.file import Model, load_model
+from tilenca.model.render import check_fits, is_current, render, write_files
+
+
+def _sums(model: Model) -> str:
+    """Which sums are proven to need 16 bits only; one line."""
+    narrow = [
+        f"layer {layer} {one.outputs.start}..{one.outputs.stop - 1}"
+        for layer in (1, 2, 3)
+        for one in packing.passes(model, layer)
+        if one.narrow
+    ]
+    return f"sums of 16 bits: {', '.join(narrow) or 'none'}; of 24 bits: all others"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the arguments of `tilenca export`."""
+    parser.add_argument(
+        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="the trained model"
+    )
+    parser.add_argument(
+        "--out", type=Path, default=paths.FIRMWARE, metavar="DIR", help="the firmware's folder to render into"
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not current")
+    parser.add_argument("--force", action="store_true", help="overwrite files that were edited by hand")
+    parser.add_argument("--json", action="store_true", help="print one JSON document")
+    export_plan.add_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Renders, or checks, the files, or estimates what a network to be would cost; prints what was done."""
+    if export_plan.asked(args):
+        return export_plan.run(args)
+    model = load_model(args.model)
+    check_fits(model)
+    files = render(model)
+    differing = [
+        str(args.out / path) for path, text in files.items() if not is_current(args.out / path, text)
+    ]
+    if not args.check:
+        write_files(args.out, files, args.force)
+    report = {
+        "files": [str(args.out / path) for path in files],
+        "flash_bytes": cost.flash_bytes(model.dimensions, len(model.labels)),
+        "model_id": f"{model.model_id:04X}",
+        "narrow_outputs": [packing.narrow_outputs(packing.passes(model, layer)) for layer in (1, 2, 3)],
+        "differing" if args.check else "written": differing,
+    }
+    if args.json:
+        print(json.dumps(report))
+    if args.check and differing:
+        names = ", ".join(differing)
+        raise TilencaError(
+            f"{names}: not what {args.model} renders to; run: tilenca export --model {args.model}"
+        )
+    if not args.json:
+        state = "current" if args.check or not differing else "written"
+        for path in files:
+            print(f"{args.out / path}: {state}")
+        print(f"model {report['model_id']}, {report['flash_bytes']} bytes of flash")
+        print(_sums(model))
+    return 0

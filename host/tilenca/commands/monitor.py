@@ -1,0 +1,203 @@
+"""`tilenca monitor`: tiles in their places as a live picture, a log, or JSON; recorded, played back."""
+
+import argparse
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Protocol, TypeAlias
+
+from rich.console import Console
+
+from tilenca.base.errors import NoDeviceError, TilencaError, UsageError
+from tilenca.base.signals import held_back
+from tilenca.base.stdio import warn
+from tilenca.commands.arguments import add_fleet_arguments, not_negative
+from tilenca.fleet.boards import Found, find_boards, find_fleet, load_places
+from tilenca.fleet.grid import Grid
+from tilenca.fleet.ports import MAGIC
+from tilenca.fleet.reader import PortReader
+from tilenca.fleet.recording import Choice, Recorder, format_event
+from tilenca.fleet.replay import KEYS, Player
+from tilenca.fleet.state import Event, Fleet
+from tilenca.views.fleet_live import LiveView
+from tilenca.views.fleet_log import EventLines, JsonLines, NewsLines
+from tilenca.views.fleet_table import summary
+from tilenca.views.keyboard import Keyboard, is_ours
+
+# The time, and what has come by then.
+Events: TypeAlias = Iterator[tuple[float, list[Event]]]
+
+TICK_S = 0.2
+# How often to look for boards that came back under another name.
+LOOK_AROUND_S = 3.0
+# How long patterns that match nothing may do so: an emulation is up in a second or two.
+PATIENCE_S = 8.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the command's options."""
+    add_fleet_arguments(parser)
+    manner = parser.add_mutually_exclusive_group()
+    manner.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
+    manner.add_argument("--log", action="store_true", help="one line for whatever is new, no picture")
+    manner.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
+    parser.add_argument(
+        "--seconds",
+        type=not_negative,
+        metavar="S",
+        help="end after S seconds, with --replay of the recording (default: at Ctrl-C)",
+    )
+    storage = parser.add_mutually_exclusive_group()
+    storage.add_argument(
+        "--record", type=Path, metavar="F", help="append all that is heard to F, with its time"
+    )
+    storage.add_argument(
+        "--replay",
+        type=Path,
+        metavar="F",
+        help=f"show a recording instead of reading ports; on a terminal, {KEYS} (a pipe does not go back)",
+    )
+    parser.add_argument(
+        "--speed",
+        type=not_negative,
+        metavar="X",
+        help="with --replay: X times as fast; 0: at once (default: 1)",
+    )
+    parser.add_argument(
+        "--from",
+        type=not_negative,
+        dest="start",
+        metavar="S",
+        help="with --replay: start S seconds after the recording's beginning",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Shows events until the end or an interrupt; see `tilenca monitor --help`."""
+    for option, value in (("speed", args.speed), ("from", args.start)):
+        if value is not None and not args.replay:
+            raise UsageError(f"--{option} does nothing without --replay; add it, or leave --{option} out")
+    fleet = Fleet()
+    try:
+        with ExitStack() as stack:
+            if args.replay:
+                choice = Choice(args.replay, args.port)
+                speed = 1.0 if args.speed is None else args.speed
+                player = Player(lambda: iter(choice), speed, TICK_S, args.start or 0.0)
+                display = _display(args, fleet, Grid(load_places(args.tiles)), stack, player)
+                start_s = args.start or 0.0
+                _show(iter(player), fleet, display, None, args.seconds, start_s)
+                choice.complain(start_s)
+            else:
+                source, grid = _listen(args, stack)
+                record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
+                _show(source, fleet, _display(args, fleet, grid, stack), record, args.seconds)
+    finally:
+        if fleet.tiles:
+            warn(summary(fleet.tiles.values()))
+    return 0 if args.replay or all(view.was_open for view in fleet.tiles.values()) else 1
+
+
+class Display(Protocol):
+    """Shows the fleet and what is new; called at least every TICK_S."""
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        """Shows events, just taken by the fleet."""
+
+
+def _show(
+    source: Events,
+    fleet: Fleet,
+    display: Display,
+    record: Recorder | None,
+    seconds: float | None,
+    start_s: float = 0.0,
+) -> None:
+    """Shows all that comes, until `seconds` after it has come `start_s` far."""
+    began_s: float | None = None
+    for now_s, events in source:
+        began_s = now_s + start_s if began_s is None else began_s
+        if seconds is not None and now_s - began_s > seconds:
+            return
+        for event in events:
+            fleet.take(event)
+        if record and events:
+            record.write(map(format_event, events))
+        display.show(now_s, events)
+
+
+def _listen(args: argparse.Namespace, stack: ExitStack) -> tuple[Events, Grid]:
+    """Events from the ports, which are found (or not) before anything is shown."""
+    found = _awaited(args)
+    found.tell_others()
+    reader = stack.enter_context(PortReader([board.port.name for board in found.boards]))
+    grid = Grid(load_places(args.tiles))
+    grid.know(found)
+
+    def events() -> Events:
+        look_s = time.monotonic() + LOOK_AROUND_S
+        while True:
+            news = reader.poll(TICK_S)
+            yield time.time(), news
+            if time.monotonic() >= look_s:
+                look_s = time.monotonic() + LOOK_AROUND_S
+                _look_around(args, found, reader, grid)
+
+    return events(), grid
+
+
+def _look_around(args: argparse.Namespace, found: Found, reader: PortReader, grid: Grid) -> None:
+    """Adds what has come since: a board may come back under another name."""
+    if not (found.missing or reader.closed or any(map(MAGIC.search, args.port))):
+        return
+    try:
+        now = find_boards(args.port, args.tiles)
+    except TilencaError:
+        return  # nothing is there now, or somebody is editing the file
+    reader.add([board.port.name for board in now.boards])
+    grid.know(now)
+
+
+def _awaited(args: argparse.Namespace) -> Found:
+    """The boards, for which patterns get a while: tiles that were just started may still be coming."""
+    end_s = time.monotonic() + PATIENCE_S
+    told, before = False, 0
+    while True:
+        try:
+            found = find_fleet(args.port, args.tiles)
+            if not told or len(found.boards) == before:
+                return found
+            before = len(found.boards)  # they come one after the other: look once more
+        except NoDeviceError:
+            if not any(map(MAGIC.search, args.port)) or time.monotonic() >= end_s:
+                raise
+        if not told:
+            warn(f"nothing matches {' '.join(args.port)} yet; waiting up to {PATIENCE_S:g} s for it")
+            told = True
+        time.sleep(TICK_S)
+
+
+def _display(
+    args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack, player: Player | None = None
+) -> Display:
+    """JSON if so asked; on a terminal the live picture, with keys for what is replayed; else lines."""
+    start_s = args.start or 0.0
+    if args.json:
+        return JsonLines(start_s)
+    if args.log:
+        return NewsLines(start_s, fleet)
+    console = Console()
+    if not console.is_terminal or console.is_dumb_terminal:
+        return EventLines(start_s)
+    about = f"replay of {args.replay}" if player else ""
+    display = LiveView(fleet, grid, console, args.table, about)
+    if player and sys.stdin and is_ours(sys.stdin.fileno()):
+        with held_back():  # whoever takes the terminal is sure to give it back
+            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno(), sys.stdout.fileno())).wait
+        if args.replay.is_file():  # what comes through a pipe comes once
+            player.begin_again = display.begin_again
+        display.footer = lambda: f"{player.status}; {player.keys}"
+    stack.enter_context(display.live)
+    return display

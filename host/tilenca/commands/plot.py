@@ -1,0 +1,137 @@
+"""`tilenca plot`: pictures of how training went, and of tiles at work."""
+
+import argparse
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.commands.arguments import seed, whole
+from tilenca.model.file import load_model
+from tilenca.shapes.batch import load_drawings
+from tilenca.shapes.file import load_task
+from tilenca.simulator.simulator import Schedule
+
+HISTORY_FILE = "history.csv"
+FILM_SUFFIXES = (".png", ".svg", ".gif")
+STEPS = 19
+MAX_STEPS = 500
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    parser.add_argument(
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="where the picture of the training goes (the model's directory)",
+    )
+    parser.add_argument(
+        "--format", choices=("png", "svg"), default="png", help="of the picture of the training (png)"
+    )
+    film = parser.add_argument_group("film", "instead: what the tiles of a shape show, step by step")
+    film.add_argument(
+        "--film", type=Path, metavar="FILE", help="all steps in one .png or .svg, or an animated .gif"
+    )
+    film.add_argument(
+        "--shape", metavar="NAME", help="the shape to film, such as 4, or 4@2 if the label has two drawings"
+    )
+    film.add_argument("--shapes", type=Path, metavar="F", help="the file it is in (shapes/digits.toml)")
+    film.add_argument(
+        "--steps", type=whole(1, MAX_STEPS), metavar="N", help=f"updates per tile ({STEPS}: twenty pictures)"
+    )
+    film.add_argument(
+        "--schedule", choices=("random", "clock"), help="the paper's, or the tiles' own clocks (clock)"
+    )
+    film.add_argument("--seed", type=seed, metavar="N", help="same seed, same film (default 1)")
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Draws, and prints which file."""
+    report = _history(args) if args.film is None else _film(args)
+    print(json.dumps(report) if args.json else report["file"])
+    return 0
+
+
+def _history(args: argparse.Namespace) -> dict[str, Any]:
+    for name in ("shape", "shapes", "steps", "schedule", "seed"):
+        if getattr(args, name) is not None:
+            raise UsageError(f"--{name} is of a film; add --film FILE.png or FILE.gif")
+    from tilenca.views import plots
+
+    model = load_model(args.model)
+    columns, rows = read_history(args.model / HISTORY_FILE)
+    out = args.model if args.out is None else args.out
+    path = out / f"history.{args.format}"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise plots.unwritable(out, error) from error
+    plots.plot_history(rows, path, columns, f"Training of model {model.model_id:04X}")
+    return {"file": str(path), "model": f"{model.model_id:04X}", "rows": len(rows)}
+
+
+def read_history(path: Path) -> tuple[list[str], list[list[float | None]]]:
+    """The columns of a training history and its rows; an empty field is None.
+
+    Raises:
+        UsageError: no such file, or not a history; the message names the line.
+    """
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            lines = list(csv.reader(file))
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give --model what `tilenca train` wrote") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise UsageError(f"{path}: not a training history ({error}); train again") from error
+    columns, rows = (lines[0] if lines else []), []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            if len(line) != len(columns):
+                raise ValueError(f"{len(line)} fields for {len(columns)} columns")
+            rows.append([float(text) if text else None for text in line])
+        except ValueError as error:
+            raise UsageError(f"{path}:{number}: {error}; train again") from error
+    return columns, rows
+
+
+def _film(args: argparse.Namespace) -> dict[str, Any]:
+    if args.shape is None:
+        raise UsageError("--film: of which shape? add --shape NAME, such as --shape 4")
+    if args.out is not None:
+        raise UsageError("--out is for the picture of the training; --film names its own file")
+    if args.film.suffix not in FILM_SUFFIXES:
+        raise UsageError(
+            f"{args.film}: a film is written as {', '.join(FILM_SUFFIXES)}; give a name that ends so"
+        )
+    from tilenca.simulator.trace import record
+    from tilenca.views.film import draw_gif, draw_strip
+
+    model = load_model(args.model)
+    shapes = args.shapes or paths.DEFAULT_SHAPES
+    drawings = load_drawings([shapes], labels=model.labels)
+    number = drawings.shapes.index(load_task(shapes).find(args.shape))
+    schedule: Schedule = args.schedule or "clock"
+    chance = 1 if args.seed is None else args.seed
+    film = record(model, drawings, number, args.steps or STEPS, schedule, chance)
+    draw = draw_gif if args.film.suffix == ".gif" else draw_strip
+    return {
+        "file": str(args.film),
+        "model": f"{model.model_id:04X}",
+        "shape": args.shape,
+        "schedule": schedule,
+        "seed": chance,
+        "steps": args.steps or STEPS,
+        "pictures": draw(film, args.film),
+        "agreed_at": film.agreed_at,
+    }

@@ -1,0 +1,311 @@
+"""`tilenca train`: drawings in, a checked and quantised model out."""
+
+import argparse
+import json
+import shlex
+import shutil
+import subprocess
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tilenca.base import paths
+from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
+from tilenca.base.stdio import warn
+from tilenca.commands.arguments import count, seed, whole
+from tilenca.evaluation.suites import set_exam
+from tilenca.model import cost
+from tilenca.model.file import MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
+from tilenca.protocol.constants import MAX_CHANNELS
+from tilenca.shapes.batch import Drawings, load_training_task
+from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.sizes import Sizes
+from tilenca.shapes.variants import Known
+from tilenca.training.curriculum import labels_of
+from tilenca.training.device import check_device
+from tilenca.training.recipes import RECIPES, Recipe, aims_of, find_recipe
+
+if TYPE_CHECKING:
+    from tilenca.training.results import Result
+    from tilenca.training.runner import Job
+    from tilenca.training.trainer import Trained
+
+EXAM_SEED = 1_000_000  # more than any seed of training that anybody types, so that chance is another
+SELECTION_RUNS = 50  # of each drawing, to choose among seeds
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    parser.add_argument(
+        "--shapes",
+        type=Path,
+        nargs="+",
+        default=[paths.DEFAULT_SHAPES],
+        metavar="F",
+        help="shape files, one task; the first may say at what other sizes its drawings keep their class "
+        "(shapes/digits.toml)",
+    )
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
+    parser.add_argument(
+        "--recipe",
+        default="full",
+        metavar="NAME",
+        help=f"one of: {' '.join(RECIPES)} (full; quick is for trying out drawings)",
+    )
+    parser.add_argument("--seed", type=seed, default=1, metavar="N", help="same seed, same model (default 1)")
+    parser.add_argument(
+        "--seeds",
+        type=whole(1, 64),
+        metavar="K",
+        help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
+    )
+    parser.add_argument(
+        "--jobs", type=whole(1, 64), metavar="J", help="how many of them at once (one for each processor)"
+    )
+    parser.add_argument(
+        "--iterations", type=count, metavar="N", help="so many, instead of as many as the recipe says"
+    )
+    parser.add_argument(
+        "--state",
+        type=whole(2, MAX_CHANNELS),
+        default=21,
+        metavar="C",
+        help="channels of the state (default 21)",
+    )
+    parser.add_argument(
+        "--hidden",
+        type=whole(1, MAX_WIDTH),
+        metavar="H",
+        help="width of both hidden layers (as the recipe says)",
+    )
+    parser.add_argument("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
+    parser.add_argument(
+        "--validation-runs",
+        type=count,
+        metavar="N",
+        help="runs per drawing when it is measured, instead of as many as the recipe says",
+    )
+    parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
+    parser.add_argument(
+        "--force", action="store_true", help="replace the model in DIR, unless it is the better one"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the arguments ask for.
+
+    Attributes:
+        task: the drawings of the files, with the model's labels.
+        sizes: of the task.
+        recipe: with the arguments' changes.
+        dimensions: of the network.
+        seeds: to train.
+        validation_runs: of each drawing in the final measurement.
+    """
+
+    task: Drawings
+    sizes: Sizes
+    recipe: Recipe
+    dimensions: Dimensions
+    seeds: tuple[int, ...]
+    validation_runs: int
+
+
+def run(args: argparse.Namespace) -> int:
+    """Trains, measures, quantises, writes."""
+    started = time.monotonic()
+    plan = _plan(args)
+    check_device(args.device)
+    fits = cost.check(plan.dimensions, len(plan.task.labels))
+    _check_out(args, plan)
+    _announce(plan, fits)
+
+    from tilenca.evaluation.metrics import validate
+    from tilenca.simulator.engine import FastEngine
+    from tilenca.simulator.simulator import processors
+    from tilenca.training.results import Result, keep
+    from tilenca.training.runner import Job, train_side_by_side
+    from tilenca.training.trainer import Config, model_of
+    from tilenca.views.training import show_training
+
+    configs = [
+        Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources) for n in plan.seeds
+    ]
+    at_once = min(args.jobs or processors(), len(configs))
+    threads = max(1, processors() // at_once)
+    jobs = [
+        Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
+    ]
+    made = {
+        "command": _command(args),
+        "shapes": [_place(path) for path in args.shapes],
+        "commit": _commit(),
+        "recipe_name": args.recipe,
+    }
+    with show_training(plan.seeds, plan.recipe.iterations) as tell:
+        try:
+            failures = train_side_by_side(jobs, at_once, tell)
+        except (InterruptedRunError, KeyboardInterrupt) as error:
+            raise _interrupted(args, str(error) or "while training") from None
+    for failure in failures:
+        warn(failure)
+    try:
+        trained = _best(jobs, args.seed)
+        model, cut = model_of(trained, {**made, **trained.config.as_json()})
+        # Other runs and other random drawings than those that decided when to stop, and for which seed.
+        exam_seed = EXAM_SEED + args.seed
+        exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), exam_seed)
+        metrics = validate(FastEngine(model), exam, plan.validation_runs, exam_seed, warn)
+    except KeyboardInterrupt:
+        raise _interrupted(args, "while measuring the trained model") from None
+    metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
+    metrics["kept"] = trained.kept
+    result = Result(model, metrics, trained.history, trained.checks)
+    where = keep(args.out, result)
+    _draw_history(where, result)
+    for path in checkpoints(args.out):
+        path.unlink()
+    _report(args, where, metrics, time.monotonic() - started)
+    return 0
+
+
+def _draw_history(where: Path, result: "Result") -> None:
+    from tilenca.training.results import history_table
+    from tilenca.views.plots import plot_history
+
+    if result.history:
+        columns, rows = history_table(result)
+        title = f"Training of model {result.model.model_id:04X}"
+        plot_history(rows, where / "history.png", columns, title)
+
+
+def _plan(args: argparse.Namespace) -> Plan:
+    recipe = find_recipe(args.recipe)
+    if args.iterations is not None:
+        recipe = replace(recipe, iterations=args.iterations)
+    hidden = args.hidden or recipe.hidden
+    dimensions = Dimensions(args.state, hidden, hidden)
+    task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
+    labels = labels_of(task, recipe, dimensions.max_classes)
+    seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
+    runs = args.validation_runs or recipe.validation_runs
+    return Plan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
+
+
+def _announce(plan: Plan, fits: cost.Fit) -> None:
+    """Says what will be trained, whether tiles can run it, and what nobody could tell apart."""
+    warn(str(fits))
+    if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
+        warn(
+            f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
+            "tiles would learn to say that they do not know"
+        )
+    if plan.recipe.damaged:
+        known = Known((shape.label, shape.rows) for shape in plan.task.shapes)
+        doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
+        if doubts:
+            warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    warn(
+        f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
+        f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "
+        "a checkpoint"
+    )
+
+
+def _check_out(args: argparse.Namespace, plan: Plan) -> None:
+    unfinished = bool(checkpoints(args.out))
+    if (args.out / "model.json").exists() and not (args.resume or args.force):
+        raise UsageError(f"{args.out}: holds a model already; give another --out, or --force to replace it")
+    if unfinished and not (args.resume or args.force):
+        raise UsageError(
+            f"{args.out}: holds an unfinished run; add --resume to continue it, --force to start anew"
+        )
+    if args.resume and not any(checkpoint_path(args.out, number).exists() for number in plan.seeds):
+        raise UsageError(f"{args.out}: no checkpoint of this run to resume; train without --resume")
+    try:
+        args.out.mkdir(parents=True, exist_ok=True)
+        probe = args.out / ".write-probe"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise UsageError(f"{args.out}: cannot write there ({error.strerror}); give another --out") from error
+
+
+def _best(jobs: "list[Job]", exam_seed: int) -> "Trained":
+    """Of what was trained to its end, that which falls short of its targets least."""
+    from tilenca.evaluation.metrics import Examiner
+    from tilenca.simulator.engine import FastEngine
+    from tilenca.training.trainer import model_of, trained_at
+
+    finished = []
+    for job in jobs:
+        with suppress(UsageError):  # what is missing or damaged has been told of
+            finished.append(trained_at(job.checkpoint, job.config))
+    finished = [trained for trained in finished if trained.done]
+    if not finished:
+        raise TilencaError("no seed was trained to its end; see above, or try another --seed")
+    if len(finished) == 1:
+        return finished[0]
+    shortfalls = []
+    for trained in finished:
+        model, _ = model_of(trained, {})
+        exam = set_exam(jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), exam_seed)
+        rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, exam_seed).short_rows()
+        shortfalls.append(sum(row.shortfall for row in rows))
+        warn(f"seed {trained.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
+    return finished[shortfalls.index(min(shortfalls))]
+
+
+def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
+    if not checkpoints(args.out):
+        return InterruptedRunError(f"interrupted {where}, before there was anything to keep")
+    return InterruptedRunError(f"interrupted {where}; continue with: {_command(args, str)} --resume")
+
+
+def _place(path: Path) -> str:
+    """A path as seen from the project's root, if it is inside."""
+    full = path.resolve()
+    return str(full.relative_to(paths.ROOT) if full.is_relative_to(paths.ROOT) else path)
+
+
+def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) -> str:
+    """The command that makes this model."""
+    recipe = find_recipe(args.recipe)
+    words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]
+    words += ["--recipe", args.recipe, "--seed", str(args.seed)]
+    words += ["--seeds", str(args.seeds or recipe.seeds)]
+    words += ["--iterations", str(args.iterations or recipe.iterations)]
+    words += ["--hidden", str(args.hidden or recipe.hidden)]
+    for option, default in (("state", 21), ("device", "cpu"), ("validation_runs", None)):
+        if (value := getattr(args, option)) != default:
+            words += [f"--{option.replace('_', '-')}", str(value)]
+    return shlex.join(words)
+
+
+def _commit() -> str:
+    """The commit this runs on, `-dirty` when tracked files differ; "unknown" outside a repository."""
+    git = shutil.which("git")
+    if git is None:
+        return "unknown"
+    words = [git, "-C", str(paths.ROOT), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
+
+
+def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seconds: float) -> None:
+    if args.json:
+        print(json.dumps({"model": str(where), "seconds": round(seconds, 1), "metrics": metrics}))
+        return
+    missed = [row for row in metrics["rows"] if not row["holds"]]
+    print(f"model in {where}, {seconds:.0f} s; {metrics['targets_held']} targets held")
+    for row in missed:
+        worst, least = row["worst"], f", wanted {row['floor']:.1%}" if row["floor"] else ""
+        print(
+            f"  missed: {row['name']}, after {row['steps']} steps: {row['share']:.1%} of the runs, "
+            f"wanted {row['target']:.1%}; the worst drawing, {worst['shape']}: {worst['share']:.1%}{least}"
+        )

@@ -1,0 +1,275 @@
+"""Many emulated tiles on one clock: the Python face of the C++ array."""
+
+import os
+from collections.abc import Iterator, Sequence
+from ctypes import POINTER, byref, c_double, c_uint8, c_uint32, c_uint64, string_at
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+from tilenca.base.errors import TilencaError, UsageError, image_error
+from tilenca.base.sides import SIDES
+from tilenca.emulator.library import check, last_error, library
+from tilenca.emulator.tile import DATA_SPACE, EmulatedTile
+
+MOST_DELAY_S = 1.0
+
+# A link joins a side of one tile to a side of another: (tile, side, other tile, other side), tiles from 0.
+Link = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True)
+class LinkFault:
+    """What goes wrong in one direction of a cable.
+
+    Attributes:
+        loss: share of the bytes that never arrive, 0..1.
+        flip: share of the data bits that arrive inverted, 0..1.
+        delay_s: seconds more than the usual 20 us that everything takes.
+        baud: how fast bytes are on it; 0: as the USART at either end is set.
+    """
+
+    loss: float = 0.0
+    flip: float = 0.0
+    delay_s: float = 0.0
+    baud: float = 0.0
+
+
+@dataclass(frozen=True)
+class FaultCounts:
+    """What a faulty direction has done: bytes that entered it, bytes it lost, bits it inverted."""
+
+    bytes: int
+    lost: int
+    flipped: int
+
+
+class Array:
+    """Tiles in lockstep. Index it to reach a tile; close it, or use it in a `with` statement, to free it."""
+
+    def __init__(
+        self,
+        image: Path | str,
+        tiles: int = 1,
+        links: Sequence[Link] = (),
+        ppm: Sequence[float] | None = None,
+        switch_on_s: Sequence[float] | None = None,
+        bootloader: Path | str | None = None,
+        threads: int = 1,
+    ) -> None:
+        """Builds the tiles; nothing runs yet.
+
+        Args:
+            image: ELF or Intel HEX file that all tiles run.
+            tiles: how many.
+            links: the cables.
+            ppm: each tile's clock error in parts per million; default none.
+            switch_on_s: when each tile is switched on, in seconds; default 0.
+            bootloader: image for the boot section; with one, the tiles start there after every reset.
+            threads: how many share the work; they change nothing else.
+
+        Raises:
+            BuildError: the emulator is not built.
+            BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
+            UsageError: the lists do not fit the number of tiles.
+        """
+        self._handle: int | None = None
+        ppm, switch_on_s = ppm or [0.0] * tiles, switch_on_s or [0.0] * tiles
+        if tiles < 1 or len(ppm) != tiles or len(switch_on_s) != tiles:
+            raise UsageError(
+                f"an array of {tiles} tiles got {len(ppm)} clock errors and {len(switch_on_s)} switch-on "
+                "times; give one of each per tile"
+            )
+        doubles = c_double * tiles
+        boot = None if bootloader is None else os.fsencode(bootloader)
+        self._handle = library().tilenca_array_new(
+            os.fsencode(image), boot, tiles, doubles(*ppm), doubles(*switch_on_s)
+        )
+        if not self._handle:
+            raise image_error(last_error())
+        self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
+        for link in links:
+            self.link(*link)
+        self.set_threads(threads)
+
+    @property
+    def handle(self) -> int:
+        """The array as the C library knows it.
+
+        Raises:
+            UsageError: it has been closed.
+        """
+        if self._handle is None:
+            raise UsageError("the array is closed; build another")
+        return self._handle
+
+    # --- tiles and cables, also while it runs ---
+
+    def add_tile(self, ppm: float = 0.0, switch_on_s: float | None = None) -> EmulatedTile:
+        """One more tile, switched on at that time (default: now), without cables."""
+        start_s = self.time_s if switch_on_s is None else switch_on_s
+        library().tilenca_array_add_tile(self.handle, ppm, start_s)
+        self._tiles.append(EmulatedTile(self, len(self._tiles)))
+        return self._tiles[-1]
+
+    def remove_tile(self, tile: int) -> None:
+        """Switches a tile off and takes its cables away; the others keep their numbers."""
+        self._check_end(tile, 0)
+        library().tilenca_array_remove_tile(self.handle, tile)
+
+    def link(self, tile: int, side: int, other: int, other_side: int) -> None:
+        """Lays a cable between two sides."""
+        self._check_end(tile, side)
+        self._check_end(other, other_side)
+        if tile == other:
+            raise UsageError(f"link {(tile, side, other, other_side)}: a cable joins two tiles")
+        check(library().tilenca_array_link(self.handle, tile, side, other, other_side) == 0)
+
+    def unlink(self, tile: int, side: int) -> None:
+        """Takes the cable at a side away."""
+        self._check_end(tile, side)
+        check(library().tilenca_array_unlink(self.handle, tile, side) == 0)
+
+    def cut(self, tile: int, side: int) -> None:
+        """Cuts the cable at a side: nothing gets through any more, and both ends read high."""
+        self._check_end(tile, side)
+        check(library().tilenca_array_connect(self.handle, tile, side, False) == 0)
+
+    def mend(self, tile: int, side: int) -> None:
+        """Mends a cable that was cut."""
+        self._check_end(tile, side)
+        check(library().tilenca_array_connect(self.handle, tile, side, True) == 0)
+
+    def set_fault(self, tile: int, side: int, fault: LinkFault, seed: int = 0) -> None:
+        """Spoils the direction that leaves a side, from now on; `LinkFault()` makes it whole again.
+
+        Raises:
+            UsageError: no cable there, or a number out of range.
+        """
+        self._check_end(tile, side)
+        in_range = 0 <= fault.loss <= 1 and 0 <= fault.flip <= 1 and 0 <= fault.delay_s <= MOST_DELAY_S
+        if not in_range or fault.baud < 0:
+            raise UsageError(f"{fault}: loss and flip are 0 to 1, delay_s 0 to {MOST_DELAY_S}, baud above 0")
+        number = seed * len(self) * len(SIDES) + tile * len(SIDES) + side
+        check(
+            library().tilenca_array_set_fault(
+                self.handle, tile, side, fault.loss, fault.flip, fault.delay_s, fault.baud, number % 2**64
+            )
+            == 0
+        )
+
+    def fault_counts(self, tile: int, side: int) -> FaultCounts:
+        """What the direction that leaves a side has lost and flipped, while it was told to."""
+        self._check_end(tile, side)
+        counts = (c_uint64 * 3)()
+        check(library().tilenca_array_fault_counts(self.handle, tile, side, counts) == 0)
+        return FaultCounts(counts[0], counts[1], counts[2])
+
+    def _check_end(self, tile: int, side: int) -> None:
+        if not 0 <= tile < len(self) or not 0 <= side < len(SIDES):
+            raise UsageError(
+                f"tile {tile}, side {side}: tiles are 0 to {len(self) - 1}, sides 0 to 3 (N E S W)"
+            )
+
+    # --- time ---
+
+    def set_threads(self, threads: int) -> None:
+        """How many threads share the work; they change nothing else."""
+        if threads < 1:
+            raise UsageError(f"{threads} threads; at least 1")
+        library().tilenca_array_set_threads(self.handle, threads)
+
+    def run(self, seconds: float) -> None:
+        """Runs all tiles for a while; returns early while a tile is halted at a breakpoint.
+
+        Raises:
+            TilencaError: a tile stopped at a fault; the message names tile, place and fact.
+        """
+        if library().tilenca_array_run(self.handle, seconds):
+            raise TilencaError(next(tile.fault for tile in self._tiles if tile.fault))
+
+    @property
+    def time_s(self) -> float:
+        """Seconds of emulated time since the array began, a whole number of 16 us."""
+        return float(library().tilenca_array_time(self.handle))
+
+    @property
+    def halted(self) -> list[EmulatedTile]:
+        """The tiles that stand before a breakpoint."""
+        return [tile for tile in self._tiles if tile.halted]
+
+    # --- snapshots ---
+
+    def save(self) -> bytes:
+        """Everything that decides about the future: tiles, what is on the cables, cables, faults.
+
+        Breakpoints, marks, probes and taps are the debugger's, and stay out.
+        """
+        start = POINTER(c_uint8)()
+        count = library().tilenca_array_save(self.handle, byref(start))
+        return string_at(start, count)
+
+    def restore(self, snapshot: bytes) -> None:
+        """Goes to the moment at which `save` was called, in this array or another of the same image.
+
+        Raises:
+            UsageError: it is no snapshot, or of another image. The array is of no use then, unless another
+                `restore` succeeds.
+        """
+        if library().tilenca_array_load(self.handle, snapshot, len(snapshot)):
+            raise UsageError(f"snapshot: {last_error()}; save it anew")
+        count = library().tilenca_array_size(self.handle)
+        for tile in self._tiles[count:]:
+            tile.retire()
+        del self._tiles[count:]
+        while len(self._tiles) < count:
+            self._tiles.append(EmulatedTile(self, len(self._tiles)))
+
+    # --- the image's symbols ---
+
+    def symbol(self, name: str) -> tuple[int, int]:
+        """Address and size in bytes of a symbol of the ELF file; data memory begins at 0x800000.
+
+        Raises:
+            UsageError: there is none of that name.
+        """
+        address, size = c_uint32(), c_uint32()
+        check(library().tilenca_array_symbol(self.handle, name.encode(), address, size) == 0)
+        return address.value, size.value
+
+    def code_address(self, place: str | int) -> int:
+        """The byte address in flash of a function, or the number given."""
+        address = self.symbol(place)[0] if isinstance(place, str) else place
+        if address >= DATA_SPACE:
+            raise UsageError(f"'{place}' is no function; give a function's name or an address in flash")
+        return address
+
+    def function_at(self, address: int) -> str:
+        """The function that contains a byte of flash, or ""."""
+        return str(library().tilenca_array_function_at(self.handle, address).decode())
+
+    def __len__(self) -> int:
+        return len(self._tiles)
+
+    def __getitem__(self, index: int) -> EmulatedTile:
+        return self._tiles[index]
+
+    def __iter__(self) -> Iterator[EmulatedTile]:
+        return iter(self._tiles)
+
+    def close(self) -> None:
+        """Frees the tiles; the array cannot be used afterwards."""
+        if self._handle:
+            library().tilenca_array_free(self._handle)
+            self._handle = None
+
+    def __del__(self) -> None:
+        self.close()
+
+    def __enter__(self) -> "Array":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

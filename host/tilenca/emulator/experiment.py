@@ -1,0 +1,343 @@
+"""One drawing laid out in emulated tiles, switched on, and listened to until it has made up its mind.
+
+`tilenca.emulator` knows boards and cables; this module knows shapes, settings and telemetry.
+"""
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tilenca.base.errors import TilencaError, UsageError, image_error
+from tilenca.base.sides import EAST, SOUTH, opposite
+from tilenca.emulator.array import Array, Link
+from tilenca.emulator.faults import Faults, FaultSpec
+from tilenca.emulator.tile import EEPROM_BYTES, EmulatedTile
+from tilenca.protocol.line_reader import Heard, LineReader
+from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
+from tilenca.protocol.settings import Settings, settings_block
+from tilenca.shapes.file import Shape, Task
+from tilenca.shapes.glyphs import label_of_glyph
+
+SLICE_S = 0.05
+# How long a firmware may take to say hello; it does so within milliseconds.
+HELLO_S = 1.0
+# A tile that needs so much longer than its updates should take will not get there.
+PATIENCE = 1.5
+PATIENCE_S = 3.0
+# The sentence that tells of an update follows the display by less than this, and the next update later.
+TELLING_MS = 5.0
+EEPROM_SUFFIX = ".eeprom"
+FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """How tiles are switched on and for how long they run.
+
+    Attributes:
+        seconds: run so long; None: until every tile has done `updates` updates.
+        updates: see `seconds`.
+        period_ms: written into each tile's settings; None: the firmware's own.
+        ppm: clock errors are uniform in -ppm..ppm.
+        boot_spread_s: tiles are switched on at times uniform in 0..boot_spread_s.
+        seed: decides both; each shape draws its own.
+        bootloader: image that tiles start in; None: none.
+        faults: what goes wrong.
+        threads: how many share the work; they change nothing else.
+        eeprom: directory with an EEPROM's contents for each tile that has a file there; None: none.
+    """
+
+    seconds: float | None = None
+    updates: int = 30
+    period_ms: int | None = None
+    ppm: float = 3000.0
+    boot_spread_s: float = 1.0
+    seed: int = 0
+    bootloader: Path | None = None
+    faults: tuple[FaultSpec, ...] = ()
+    threads: int = 1
+    eeprom: Path | None = None
+
+
+@dataclass
+class _Voice:
+    """What one tile has said so far."""
+
+    reader: LineReader = field(default_factory=LineReader)
+    reports: list[TileSentence] = field(default_factory=list)
+    links: dict[str, LinkSentence] = field(default_factory=dict)
+
+
+def firmware_settings(elf: Path) -> Settings | None:
+    """The settings a firmware has when its EEPROM is empty, asked of one tile; None if it does not say hello.
+
+    Raises:
+        BuildError, UsageError: the image cannot be used or speaks another version of the protocol, or the
+            emulator is not built.
+        TilencaError: the firmware stopped at a fault.
+    """
+    reader = LineReader()
+    with Array(elf) as array:
+        while array.time_s < HELLO_S:
+            array.run(SLICE_S)
+            for _, sentence in reader.feed(array[0].read_serial()):
+                if isinstance(sentence, OtherVersionSentence):
+                    raise image_error(f"{elf}: {sentence.remedy}")
+                if isinstance(sentence, HelloSentence):
+                    pace = sentence.period_ms, sentence.updates
+                    return Settings(sentence.tile, *pace, sentence.brightness)
+    return None
+
+
+def cables(shape: Shape) -> list[Link]:
+    """One link for every pair of neighbouring tiles, numbered in reading order."""
+    neighbours = shape.neighbours()
+    return [
+        (tile, side, neighbours[tile][side], opposite(side))
+        for tile in range(len(neighbours))
+        for side in (EAST, SOUTH)  # each cable once, from its western or northern tile
+        if neighbours[tile][side] >= 0
+    ]
+
+
+class Emulation:
+    """The tiles of one shape, running."""
+
+    def __init__(
+        self, task: Task, shape: Shape, elf: Path, conditions: Conditions, defaults: Settings | None
+    ) -> None:
+        """Wires the tiles and writes their settings; nothing runs yet.
+
+        Args:
+            task: the file the shape is of; its labels tell "5" from "S".
+            shape: what to lay out.
+            elf: the firmware image.
+            conditions: how to switch it on.
+            defaults: what `firmware_settings` said; with None tiles get no settings and no number.
+
+        Raises:
+            BuildError, UsageError: the image cannot be used, or the emulator is not built.
+            UsageError: a fault is of a tile or cable that there is not, or an EEPROM file cannot be used.
+        """
+        self.task, self.shape, self.conditions = task, shape, conditions
+        count = len(shape.cells)
+        draw = random.Random(f"{conditions.seed} {shape.name}")
+        self.ppm = [draw.uniform(-conditions.ppm, conditions.ppm) for _ in range(count)]
+        self.switch_on_s = [draw.uniform(0.0, conditions.boot_spread_s) for _ in range(count)]
+        self.cables = links = cables(shape)
+        self.array = Array(
+            elf, count, links, self.ppm, self.switch_on_s, conditions.bootloader, conditions.threads
+        )
+        self._faults = Faults(self.array, links, conditions.seed)
+        for spec in conditions.faults:
+            self._faults.add(spec)
+        self.period_ms = conditions.period_ms or (defaults.period_ms if defaults else None)
+        self._voices = [_Voice() for _ in range(count)]
+        self.hello: HelloSentence | None = None  # what the firmware says of itself, the same from every tile
+        for tile in self.array:
+            kept = conditions.eeprom and load_eeprom(tile, conditions.eeprom)
+            if self.period_ms is not None and (not kept or conditions.period_ms is not None):
+                updates = defaults.updates if defaults else 0
+                tile.write_eeprom(0, settings_block(tile.index + 1, self.period_ms, updates))
+
+    def advance(self, seconds: float) -> list[Heard]:
+        """Runs on and returns what the tiles said, in order of time.
+
+        Raises:
+            TilencaError: a tile stopped at a fault.
+        """
+        self.pass_time(seconds)
+        return self.listen()
+
+    def pass_time(self, seconds: float) -> None:
+        """Runs on, and lets happen what goes wrong meanwhile.
+
+        Raises:
+            TilencaError: a tile stopped at a fault of its program.
+        """
+        for tile in self._faults.run(seconds):
+            self._voices[tile].reports.clear()  # what it said in its life before counts no more
+            self.switch_on_s[tile] = self._faults.restarted_s[tile]
+
+    def listen(self) -> list[Heard]:
+        """What the tiles have said since the last call, in order of time; ports are called `tile-01`, ..."""
+        heard = []
+        for tile, voice in zip(self.array, self._voices, strict=True):
+            for time_s, value in tile.read_serial_timed():
+                for raw, sentence in voice.reader.feed(bytes([value])):
+                    heard.append(Heard(time_s, port_name(tile.index), raw, sentence))
+                    self._note(voice, heard[-1])
+        return sorted(heard, key=lambda line: (line.time_s, line.port))
+
+    def _note(self, voice: _Voice, heard: Heard) -> None:
+        if isinstance(heard.sentence, TileSentence):
+            voice.reports.append(heard.sentence)
+        elif isinstance(heard.sentence, LinkSentence):
+            voice.links[heard.sentence.side] = heard.sentence
+        elif isinstance(heard.sentence, HelloSentence):
+            self.hello = heard.sentence
+
+    def share_done(self) -> float:
+        """How much of the run is done, 0 to 1; in updates, those of the least advanced tile."""
+        if self.conditions.seconds is not None:
+            return min(self.array.time_s / self.conditions.seconds, 1.0)
+        done = min(map(self._updates, self._standing()), default=0)
+        return min(done / self.conditions.updates, 1.0)
+
+    def done(self) -> bool:
+        """Whether it has run for as long as its conditions ask."""
+        return self.share_done() >= 1.0
+
+    def run(self, on_slice: Callable[["Emulation", list[Heard]], None]) -> None:
+        """Runs until done, and calls `on_slice` after every slice of it.
+
+        Raises:
+            TilencaError: a tile stopped at a fault, or does not get its updates done.
+        """
+        limit_s = self._limit_s()
+        while not self.done():
+            if self.array.time_s > limit_s:
+                slowest = min(self._standing(), key=self._updates, default=0)
+                raise TilencaError(
+                    f"shape '{self.shape.name}': tile {slowest + 1} told of {self._updates(slowest)} updates "
+                    f"in {limit_s:.1f} s, {self.conditions.updates} were asked for; give --seconds to run on"
+                )
+            left_s = (
+                SLICE_S if self.conditions.seconds is None else self.conditions.seconds - self.array.time_s
+            )
+            on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))
+
+    def _limit_s(self) -> float:
+        if self.conditions.seconds is not None:
+            return float("inf")
+        expected_s = self.conditions.updates * (self.period_ms or 0) / 1000
+        return self.conditions.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
+
+    def _standing(self) -> list[int]:
+        """The tiles that have power; no more is asked of the others."""
+        return [tile.index for tile in self.array if tile.powered]
+
+    def _updates(self, index: int) -> int:
+        reports = self._voices[index].reports
+        return reports[-1].updates if reports else 0
+
+    def label(self, segments: int) -> str:
+        """The character that lit segments show; "" for a dark display, "?" for none."""
+        return label_of_glyph(segments, self.task.labels)
+
+    def shown(self, tile: EmulatedTile) -> str:
+        """The character a tile's display shows now."""
+        return self.label(tile.segments)
+
+    @property
+    def all_right(self) -> bool:
+        """Whether every tile that has power shows the shape's label now."""
+        standing = self._standing()
+        return bool(standing) and all(self.shown(self.array[i]) == self.shape.label for i in standing)
+
+    def agreed_at_s(self) -> float | None:
+        """Time from the last switch-on to when all tiles were right to stay so; None if they are not."""
+        if not self.all_right:
+            return None
+        since = []
+        for tile in map(self.array.__getitem__, self._standing()):
+            right_from_s = 0.0
+            was_right = False
+            for change in tile.display_changes:
+                right = self.label(change.segments) == self.shape.label
+                if right and not was_right:
+                    right_from_s = change.time_s
+                was_right = right
+            since.append(right_from_s)
+        return max(since) - max(self.switch_on_s)
+
+    def agreed_at_update(self) -> int | None:
+        """How many updates the least advanced tile had done when they agreed; None if they do not."""
+        agreed_s = self.agreed_at_s()
+        if agreed_s is None:
+            return None
+        moment_s = agreed_s + max(self.switch_on_s)
+        done = []
+        for index in self._standing():
+            voice = self._voices[index]
+            uptime_ms = (moment_s - self.switch_on_s[index]) * 1000 * (
+                1 + self.ppm[index] * 1e-6
+            ) + TELLING_MS
+            done.append(
+                max((report.updates for report in voice.reports if report.uptime_ms <= uptime_ms), default=0)
+            )
+        return min(done)
+
+    def report(self, wall_s: float) -> dict[str, Any]:
+        """What `--json` prints of one shape."""
+        agreed_s = self.agreed_at_s()
+        return {
+            "shape": self.shape.name,
+            "model_id": self.hello and f"{self.hello.model_id:04X}",
+            "firmware_id": self.hello and f"{self.hello.firmware_id:08X}",
+            "simulated_s": round(self.array.time_s, 6),
+            "wall_s": round(wall_s, 3),
+            "tiles": [self._tile_report(tile) for tile in self.array],
+            "all_right": self.all_right,
+            "agreed_at_s": None if agreed_s is None else round(agreed_s, 6),
+            "agreed_at_update": self.agreed_at_update(),
+        }
+
+    def _tile_report(self, tile: EmulatedTile) -> dict[str, Any]:
+        row, col = self.shape.cells[tile.index]
+        links = self._voices[tile.index].links.values()
+        return {
+            "id": tile.index + 1,
+            "row": row,
+            "col": col,
+            "shown": self.shown(tile),
+            "rgb": list(tile.rgb),
+            "updates": self._updates(tile.index),
+            "frames": {counter: sum(getattr(link, counter) for link in links) for counter in FRAME_COUNTERS},
+        }
+
+
+def load_eeprom(tile: EmulatedTile, directory: Path) -> bool:
+    """Puts a tile's file into its EEPROM; False if it has none.
+
+    Raises:
+        UsageError: the file cannot be read, or is not as long as the EEPROM.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        contents = path.read_bytes()
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give --eeprom a directory of such files") from error
+    if len(contents) != EEPROM_BYTES:
+        raise UsageError(
+            f"{path}: {len(contents)} bytes, an EEPROM has {EEPROM_BYTES}; delete it to begin anew"
+        )
+    tile.write_eeprom(0, contents)
+    return True
+
+
+def save_eeprom(tile: EmulatedTile, directory: Path) -> None:
+    """Writes a tile's EEPROM to its file; all of it or nothing.
+
+    Raises:
+        UsageError: the directory cannot be written.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        fresh = path.with_suffix(".new")
+        fresh.write_bytes(tile.read_eeprom())
+        fresh.replace(path)
+    except OSError as error:
+        raise UsageError(
+            f"{path}: {error.strerror}; give --eeprom a directory that can be written"
+        ) from error
+
+
+def port_name(index: int) -> str:
+    """The name of a tile's serial port, numbered from 1 in reading order."""
+    return f"tile-{index + 1:02d}"

@@ -1,0 +1,61 @@
+"""What an emulated tile tells of itself."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+SRAM_END = 0x2200
+
+
+class ResetCause(IntEnum):
+    """Why a chip is reset from outside; the bit of MCUSR that tells."""
+
+    EXTERNAL = 2
+    BROWN_OUT = 4
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A tile's stack, in addresses of data memory.
+
+    Attributes:
+        pointer: the stack pointer.
+        deepest: the lowest address the stack has used since the tile was switched on.
+        floor: the lowest it may: the data, and the heap, end below.
+    """
+
+    pointer: int
+    deepest: int
+    floor: int
+
+    @property
+    def most_bytes(self) -> int:
+        """How large the stack has been."""
+        return SRAM_END - self.deepest
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A marked instruction began.
+
+    Attributes:
+        function: the function it is in.
+        address: its byte address in flash.
+        cycle: of the tile's own clock, since it was first switched on.
+    """
+
+    function: str
+    address: int
+    cycle: int
+
+
+@dataclass(frozen=True)
+class DisplayChange:
+    """A tile's display began to show something else.
+
+    Attributes:
+        time_s: seconds since the array began, to 16 us.
+        segments: bit mask as in `tilenca.shapes.glyphs`.
+    """
+
+    time_s: float
+    segments: int

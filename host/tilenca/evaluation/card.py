@@ -1,0 +1,91 @@
+"""The model card: how a model was made, what it scores, and how to make it again."""
+
+from typing import Any
+
+from tilenca.model import cost
+from tilenca.model.file import Model
+
+
+def render_card(model: Model, metrics: dict[str, Any]) -> str:
+    """README.md of a model directory.
+
+    Args:
+        model: the model.
+        metrics: what `tilenca.evaluation.metrics.validate` returned for it.
+    """
+    size, made = model.dimensions, model.made
+    files = ", ".join(f"`{source['file']}`" for source in made["sources"])
+    ending = (
+        f"ended after {metrics['iterations']} of {made['recipe']['iterations']} iterations, since all "
+        "targets held"
+        if metrics["ended_early"]
+        else f"{made['recipe']['iterations']} iterations"
+    )
+    if metrics["kept"] != metrics["iterations"]:
+        ending += f", of which what was measured best is kept, after {metrics['kept']}"
+    lines = [
+        f"# Model {model.model_id:04X}: {' '.join(model.labels)}",
+        "",
+        f"Tells {len(model.labels)} classes apart. State of {size.channels} channels, hidden layers of "
+        f"{size.hidden1} and {size.hidden2}, int8 weights, arithmetic of docs/PROTOCOL.md section 4. "
+        "`model.json` says what it is, `weights.npz` holds real and integer weights, `metrics.json` every "
+        "number below, `history.csv` the course of training (`tilenca plot` draws it).",
+        "",
+        f"On a tile: {cost.check(size, len(model.labels))}",
+        "",
+        "## How it was made",
+        "",
+        f"Recipe `{made['recipe_name']}` ({ending}), seed {made['seed']}, trained on {files}, "
+        f"at commit {made['commit']}.",
+        "",
+        "To make it again, to the byte on the same PyTorch and processor:",
+        "",
+        f"    {made['command']}",
+        "",
+        "![loss and agreement over the iterations](history.png)",
+        "",
+        "## What it scores",
+        "",
+        f"The firmware's own integers, {metrics['runs_per_drawing']} runs of every drawing in the main rows. "
+        "A step is one update per tile; a run counts when *every* tile shows the right class after the steps "
+        "of the second column. Where a row does not say otherwise, tiles live on their own clocks: each has "
+        "a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, and all are switched on "
+        "within 10 periods; steps count from the last one. Intervals are Wilson's, for these drawings. "
+        "Targets of 1.000 mean that it rounds to that. What was held out of training helped to choose "
+        "when to stop, with other runs and other random drawings than these. To measure it again:",
+        "",
+        f"    tilenca evaluate --exam --model DIR --shapes {' '.join(made['shapes'])} "
+        f"--runs {metrics['runs_per_drawing']} --seed {metrics['seed']}",
+        "",
+        f"{metrics['targets_held']} targets held.",
+        "",
+        "| what | after steps | drawings | runs | all tiles right | 95 % interval | "
+        "worst drawing | settled: median, 95 % | target |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    lines += [_row(row) for row in metrics["rows"]]
+    if metrics["weights_cut"]:
+        lines += ["", f"{metrics['weights_cut']} weights lay outside the integer range and were cut to it."]
+    return "\n".join(lines) + "\n"
+
+
+def _row(row: dict[str, Any]) -> str:
+    target = (
+        "" if row["target"] is None else f"{row['target']:.3f} {'held' if row['holds'] else '**missed**'}"
+    )
+    cells = (
+        row["name"],
+        f"{row['steps']}",
+        f"{row['drawings']}",
+        f"{row['runs']}",
+        f"{row['share']:.4f}",
+        f"{row['low']:.4f} to {row['high']:.4f}",
+        f"`{row['worst']['shape']}` {row['worst']['share']:.3f}",
+        f"{_time(row['settle']['median'])}, {_time(row['settle']['p95'])}" if row["settle"] else "",
+        target,
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+def _time(steps: float | None) -> str:
+    return "never" if steps is None else f"{steps:.0f}"

@@ -1,0 +1,185 @@
+"""What a model is asked: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
+
+Where a paper says that training never saw its drawings, that is so: sizes and unknown drawings held out.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tilenca.shapes import variants
+from tilenca.shapes.batch import Drawings, load_drawings
+from tilenca.shapes.file import UNKNOWN, Shape
+from tilenca.shapes.sizes import Size, Sizes, size_name
+from tilenca.shapes.stretch import Rows
+from tilenca.shapes.variants import Known
+
+LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
+VERY_LARGE = 196  # and beyond this even more
+SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
+
+
+@dataclass(frozen=True)
+class Paper:
+    """One set of drawings to ask about.
+
+    Attributes:
+        kind: decides the target, see `tilenca.evaluation.metrics.TARGETS`.
+        name: as tables call it.
+        drawings: with the model's labels.
+        steps: after how many steps all tiles must agree.
+        held_out: whether training never saw these drawings.
+        aimed: whether the model was trained for such drawings, so that there is a target to reach.
+    """
+
+    kind: str
+    name: str
+    drawings: Drawings
+    steps: int
+    held_out: bool = False
+    aimed: bool = True
+
+
+@dataclass(frozen=True)
+class Exam:
+    """All sets of a task.
+
+    Attributes:
+        drawn: the drawings of the files, one paper for each.
+        sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone
+            and without what stretching to a trained size gives as well (a line has no width).
+        damaged: one tile missing where that leaves no doubt about the class; None: no such case.
+        unknown: drawings of no class; empty where the model has no class for them.
+        larger: the first file's drawings at a larger trained size, and at the largest.
+    """
+
+    drawn: tuple[Paper, ...]
+    sizes: tuple[Paper, ...]
+    damaged: Paper | None
+    unknown: tuple[Paper, ...]
+    larger: tuple[Paper, ...]
+
+
+@dataclass(frozen=True)
+class Aims:
+    """What a model was trained for, beside the drawings of the files.
+
+    Attributes:
+        stretch: largest factor of the drawn size.
+        damaged: whether tiles may be missing.
+        unknown: whether to say so of drawings of no class.
+    """
+
+    stretch: float = 1.0
+    damaged: bool = False
+    unknown: bool = False
+
+
+def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Exam:
+    """Sets the exam of a task.
+
+    Args:
+        task: the drawings of its files.
+        sizes: of the task.
+        labels: the model's.
+        aims: what it was trained for.
+        seed: of the unknown drawings.
+    """
+    task = replace(task, labels=labels)
+    first = task.group(0)
+    drawn = tuple(
+        Paper("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
+        for number, source in enumerate(task.sources)
+    )
+    known = Known((shape.label, shape.rows) for shape in task.shapes)
+    damaged = [
+        Shape(shape.label, rows, f"{shape.name} less one")
+        for shape in first
+        for rows in known.damaged(shape.label, shape.rows)
+    ]
+    return Exam(
+        drawn,
+        tuple(_size_papers(task, first, sizes, sizes.within(task.largest, aims.stretch))),
+        Paper("damaged", "one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
+        tuple(_unknown_papers(task, first, known, aims, seed)) if UNKNOWN in labels else (),
+        tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
+    )
+
+
+def _at_size(first: Sequence[Shape], size: Size) -> list[Shape]:
+    return [other for shape in first if (other := shape.stretched(size)) is not None]
+
+
+def _steps(size: Size) -> int:
+    area = size[0] * size[1]
+    return SHORT_STEPS if area <= LARGE else LARGE_STEPS if area <= VERY_LARGE else VERY_LARGE_STEPS
+
+
+def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Paper]:
+    trained = _distinct(shape for size in aimed.trained for shape in _at_size(first, size))
+    trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
+    if trained:
+        yield Paper("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
+    new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
+    most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
+    for path in sizes.drawn:
+        drawings = load_drawings([path], labels=task.labels)
+        yield Paper("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+    seen = {shape.rows for shape in task.shapes} | {
+        other.rows
+        for shape in first
+        for size in (*aimed.trained, *aimed.more)
+        for up in (True, False)
+        if (other := shape.stretched(size, up)) is not None
+    }
+    for size in new:
+        if shapes := [shape for shape in _distinct(_at_size(first, size)) if shape.rows not in seen]:
+            # Half as large again as what was trained on is asked of a model, not more.
+            steps = _steps(size)
+            yield Paper(
+                "held out" if steps <= LARGE_STEPS else "very large",
+                f"{size_name(size)}, never trained on",
+                task.of(shapes),
+                steps,
+                held_out=True,
+                aimed=size[0] <= 1.5 * most[0] and size[1] <= 1.5 * most[1],
+            )
+
+
+def _larger_sizes(task: Drawings, sizes: Sizes) -> list[Size]:
+    """The trained sizes with about half as many rows and columns again, or more."""
+    height, width = task.largest
+    return [size for size in sizes.trained if size[0] >= 1.4 * height and size[1] >= 1.4 * width]
+
+
+def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Paper]:
+    """A larger size, and the largest."""
+    wanted = _larger_sizes(task, sizes)
+    for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
+        kind = "drawn" if _steps(size) <= SHORT_STEPS else "trained"
+        yield Paper(kind, size_name(size), task.of(_at_size(first, size)), _steps(size))
+
+
+def _unknown_papers(
+    task: Drawings, first: Sequence[Shape], known: Known, aims: Aims, seed: int
+) -> Iterable[Paper]:
+    random = np.random.default_rng(seed)
+    drawings = [shape.rows for shape in first]
+
+    def fits(rows: Rows) -> bool:
+        return variants.held_out(rows) and not known.is_known(rows)
+
+    for name, wanted, draw in (
+        ("random drawings", 500, variants.some_grown(drawings, random, least=4)),
+        ("halves of drawings", 100, variants.some_halves(drawings, random)),
+        ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
+    ):
+        if found := variants.draw_until(wanted, draw, fits):
+            shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
+            label = f"no class: {name}, never trained on"
+            yield Paper(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
+
+
+def _distinct(shapes: Iterable[Shape]) -> list[Shape]:
+    return list({shape.rows: shape for shape in shapes}.values())

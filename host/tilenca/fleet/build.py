@@ -1,0 +1,54 @@
+"""Building the firmware before it is written."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+from tilenca.base import paths
+from tilenca.base.errors import BuildError
+from tilenca.base.signals import held_back
+from tilenca.base.stdio import warn
+
+FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
+
+
+def build() -> None:
+    """Builds the firmware; PlatformIO itself knows what is up to date. Its output is shown only if it fails.
+
+    Raises:
+        BuildError: PlatformIO is missing or the build failed.
+    """
+    beside = Path(sys.executable).with_name("pio")
+    pio = str(beside) if beside.exists() else shutil.which("pio")
+    if pio is None:
+        raise BuildError("PlatformIO is not installed; run `make setup`, or name an image with --hex")
+    warn("building the firmware")
+    command = [pio, "run", "-e", paths.FIRMWARE_ENV]
+    building: subprocess.Popen[bytes] | None = None
+    try:
+        with held_back():
+            # A process group of its own: what the build started ends with it.
+            building = subprocess.Popen(
+                command,
+                cwd=paths.ROOT,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                process_group=0,
+            )
+        output, _ = building.communicate()
+    except BaseException:
+        if building is not None:
+            with suppress(ProcessLookupError):
+                os.killpg(building.pid, signal.SIGKILL)
+            building.communicate()
+        raise
+    if building.returncode != 0:
+        warn(output.decode("utf-8", "replace").rstrip("\n"))
+        raise BuildError(
+            f"`{' '.join(command)}` failed with status {building.returncode}; its output is above"
+        )

@@ -1,0 +1,133 @@
+"""The log of what happens in a fleet: what changed, when, and with which tile. Pure: events in, news out."""
+
+import time
+from dataclasses import dataclass
+
+from tilenca.base.sides import SIDES
+from tilenca.fleet.link_health import FAILING, WELL
+from tilenca.fleet.state import Event, Fleet, PortNews, TileView
+from tilenca.protocol.board_test import BOARD_TEST
+from tilenca.protocol.describe import printable, words
+from tilenca.protocol.sentences import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    TileSentence,
+)
+
+# The same as for a whole fleet: see `tell_models`.
+REMEDY = "flash the one that differs from most (tilenca flash)"
+
+
+@dataclass(frozen=True)
+class News:
+    """One line of the log; `tile` is None while it is not known, `bad` what a person should look at."""
+
+    time_s: float
+    port: str
+    tile: int | None
+    text: str
+    bad: bool = False
+
+
+def news_line(news: News, port: str | None = None) -> str:
+    """News as one line, the port by another name if one is given."""
+    tile = "-" if news.tile is None else str(news.tile)
+    return f"{clock_text(news.time_s)} tile {tile:>3} {port or news.port} {news.text}"
+
+
+class Reporter:
+    """Watches a fleet and tells what is new with each event."""
+
+    def __init__(self, fleet: Fleet) -> None:
+        self._fleet = fleet
+        self._label: dict[str, str] = {}
+        self._links: dict[str, str] = {}
+        self._failing: set[tuple[str, str]] = set()
+        self._foreign: set[tuple[str, str]] = set()
+
+    def take(self, event: Event) -> list[News]:
+        """The news of an event that the fleet has just taken."""
+        view = self._fleet.tiles[event.port]
+        return [
+            News(event.time_s, event.port, view.tile_id, text, bad) for text, bad in self._tell(event, view)
+        ]
+
+    def _tell(self, event: Event, view: TileView) -> list[tuple[str, bool]]:
+        if isinstance(event, PortNews):
+            return [(f"port {port_words(event)}", not event.is_open)]
+        match event.sentence:
+            case None if event.board_test:
+                return [(f"{BOARD_TEST}: {event.board_test}", "FAIL" in event.board_test)]
+            case None:
+                return [(f"damaged: {printable(event.raw)}", True)]
+            case HelloSentence() as hello:
+                self._label[event.port], self._links[event.port] = "", "----"
+                self._failing -= {(event.port, side) for side in SIDES}
+                self._foreign -= {(event.port, side) for side in SIDES}
+                return [(f"started: {words(hello)}", False)]
+            case TileSentence() as tile:
+                return [*self._label_news(event.port, tile), *self._link_news(event.port, tile)]
+            case LinkSentence() as link:
+                return [
+                    *self._foreign_news(event.port, link, view),
+                    *self._health_news(event.port, link, view),
+                ]
+            case ErrorSentence() | NakSentence() | OtherVersionSentence() as complaint:
+                return [(words(complaint), True)]
+            case AckSentence() as done:
+                return [(words(done), False)]
+        return []
+
+    def _label_news(self, port: str, tile: TileSentence) -> list[tuple[str, bool]]:
+        before, self._label[port] = self._label.get(port), tile.label
+        if before == tile.label:
+            return []
+        what = tile.label or "nothing"
+        return [(f"shows {what}, before {before}" if before else f"shows {what}", False)]
+
+    def _link_news(self, port: str, tile: TileSentence) -> list[tuple[str, bool]]:
+        before, self._links[port] = self._links.get(port), tile.links
+        if before is None or before == tile.links:
+            return []
+        gone = "".join(old for old, new in zip(before, tile.links, strict=True) if new == "-" != old)
+        come = "".join(new for old, new in zip(before, tile.links, strict=True) if old == "-" != new)
+        lost = [(f"lost its neighbour on {' '.join(gone)}", True)] if gone else []
+        return [*lost, *([(f"hears a neighbour on {' '.join(come)}", False)] if come else [])]
+
+    def _foreign_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
+        health, key = view.health.get(link.side), (port, link.side)
+        foreign = health is not None and health.foreign
+        if foreign == (key in self._foreign):
+            return []
+        self._foreign ^= {key}
+        if foreign:
+            return [(f"a tile with another model is on {link.side}: {REMEDY}", True)]
+        return [(f"no other model is on {link.side} any more", False)]
+
+    def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
+        health, key = view.health.get(link.side), (port, link.side)
+        good = health.good if health else None
+        if good is None:
+            return []
+        if good < FAILING and key not in self._failing:
+            self._failing.add(key)
+            return [(f"link {link.side} is failing: {1 - good:.0%} of the frames get lost", True)]
+        if good >= WELL and key in self._failing:
+            self._failing.discard(key)
+            return [(f"link {link.side} is well again", False)]
+        return []
+
+
+def clock_text(time_s: float) -> str:
+    """Local time of day with milliseconds."""
+    milliseconds = round(time_s * 1000)
+    return time.strftime("%H:%M:%S", time.localtime(milliseconds // 1000)) + f".{milliseconds % 1000:03d}"
+
+
+def port_words(news: PortNews) -> str:
+    """What became of a port."""
+    return "; ".join(filter(None, ("open" if news.is_open else "", news.reason)))

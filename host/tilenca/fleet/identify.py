@@ -1,0 +1,127 @@
+"""Asks many tiles at once who they are and what they run."""
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from tilenca.fleet.reader import PortReader
+from tilenca.fleet.state import Event, PortNews
+from tilenca.protocol.board_test import BOARD_TEST
+from tilenca.protocol.commands import ask_command
+from tilenca.protocol.sentences import HelloSentence, OtherVersionSentence
+
+# A tile that was reset says hello by itself once its bootloader has given up waiting; until then the
+# bootloader takes whatever it is sent for the beginning of a command, and waits for more. So nobody is asked
+# who has not spoken before (a running tile does so every second), or had the time to.
+BOOT_S = 3.0
+# What comes right after opening may be from before the reset.
+STALE_S = 0.3
+# How often to ask again, and when to give up on a tile that says nothing.
+AGAIN_S = 1.0
+PATIENCE_S = 7.0
+TICK_S = 0.05
+
+SILENT = "says nothing"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a tile says of itself; without it `problem` says why there is no answer."""
+
+    hello: HelloSentence | None = None
+    problem: str = ""
+
+    @property
+    def firmware_id(self) -> int | None:
+        """CRC-32 of what is in its flash; None if it does not tell."""
+        return self.hello.firmware_id if self.hello else None
+
+
+class _Asked:
+    """One tile while it is asked: `ask_s` is when to ask it next, `end_s` when to give up."""
+
+    def __init__(self, patience_s: float) -> None:
+        self.answer: Answer | None = None
+        self.ask_s = self.end_s = float("inf")
+        self._fresh_s = 0.0  # what was said before may be from before a reset
+        self._is_asked = False
+        self._patience_s = patience_s
+
+    def begin(self, now_s: float, ask_s: float) -> None:
+        """The port is open."""
+        self._fresh_s, self.ask_s, self.end_s = now_s + STALE_S, ask_s, now_s + self._patience_s
+
+    def asked(self, now_s: float) -> None:
+        """The question was sent."""
+        self.ask_s = now_s + AGAIN_S
+        self._is_asked = True
+
+    def take(self, event: Event, now_s: float) -> None:
+        """Adds what was heard from its port."""
+        if isinstance(event, PortNews):
+            if event.is_open:
+                self.begin(now_s, now_s + BOOT_S)
+            else:
+                self.answer = Answer(problem=event.reason.removesuffix("; waiting for it"))
+        elif isinstance(event.sentence, HelloSentence):
+            self.answer = Answer(event.sentence)
+        elif isinstance(event.sentence, OtherVersionSentence):
+            self.answer = Answer(problem=f"speaks protocol {event.sentence.version}")
+        elif now_s < self._fresh_s:
+            return
+        elif event.board_test:
+            self.answer = Answer(problem=BOARD_TEST)
+        elif event.sentence is not None and not self._is_asked:
+            self.ask_s = min(self.ask_s, now_s)
+
+
+def ask_all(
+    names: Sequence[str],
+    user: str,
+    report: Callable[[str, Answer], None] = lambda name, answer: None,
+    patience_s: float = PATIENCE_S,
+) -> dict[str, Answer]:
+    """Asks the tiles behind the ports; opening a port may reset its tile.
+
+    Args:
+        names: the ports.
+        user: the command that asks, to be named to others that want a port meanwhile.
+        report: called with each answer as it comes.
+        patience_s: how long a tile may say nothing.
+
+    Returns:
+        An answer for each port, in the order of `names`.
+    """
+    with PortReader(names, clock=time.monotonic, user=user) as reader:
+        return ask(reader, names, report, patience_s=patience_s)
+
+
+def ask(
+    reader: PortReader,
+    names: Iterable[str],
+    report: Callable[[str, Answer], None] = lambda name, answer: None,
+    hear: Callable[[Event], None] = lambda event: None,
+    patience_s: float = PATIENCE_S,
+) -> dict[str, Answer]:
+    """As `ask_all`, with ports that stay open; `hear` gets all that tiles say meanwhile."""
+    asked = {name: _Asked(patience_s) for name in names}
+    for name in asked.keys() & set(reader.open):
+        asked[name].begin(time.monotonic(), time.monotonic())
+    waiting = set(asked)
+    while waiting:
+        for event in reader.poll(TICK_S):
+            hear(event)
+            if event.port in waiting:
+                asked[event.port].take(event, time.monotonic())
+        now_s = time.monotonic()
+        for name in sorted(waiting):
+            tile = asked[name]
+            if tile.answer is None and now_s >= tile.end_s:
+                tile.answer = Answer(problem=SILENT)
+            if tile.answer is not None:
+                waiting.discard(name)
+                report(name, tile.answer)
+            elif now_s >= tile.ask_s:
+                tile.asked(now_s)
+                reader.write(name, ask_command())
+    return {name: tile.answer or Answer(problem=SILENT) for name, tile in asked.items()}

@@ -1,0 +1,192 @@
+"""Telemetry on disk: JSON lines of what was heard, when and where; raw, for readers yet to be written.
+
+A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port", "open", "reason"}`.
+"""
+
+import fnmatch
+import json
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Self
+
+from tilenca.base.errors import NoDeviceError, TilencaError, UsageError
+from tilenca.base.stdio import warn
+from tilenca.fleet.state import Event, PortNews
+from tilenca.protocol.line_reader import Heard
+from tilenca.protocol.sentences import parse_sentence
+
+# Every byte is a character of Latin-1 and back.
+ENCODING = "latin-1"
+
+# No line is so long.
+LONGEST = 1 << 20
+
+# The last moment that all clocks and calendars can name.
+LAST_S = 253_402_300_799.0
+
+
+def as_record(event: Event) -> dict[str, object]:
+    """The event as one JSON object."""
+    about: dict[str, object] = {"time": round(event.time_s, 6), "port": event.port}
+    if isinstance(event, Heard):
+        about["raw"] = event.raw.decode(ENCODING)
+    else:
+        about |= {"open": event.is_open, "reason": event.reason}
+    return about
+
+
+def format_event(event: Event) -> str:
+    """The event as one line, newline included."""
+    return json.dumps(as_record(event)) + "\n"
+
+
+class Recorder:
+    """A recording in the making; use it as a context manager."""
+
+    def __init__(self, path: Path, mode: str) -> None:
+        """Opens the file, to write it anew (`w`) or to append (`a`).
+
+        Raises:
+            UsageError: it cannot be opened, or is no recording or one whose last line was cut off: what is
+                appended could not be read.
+        """
+        self._path = path
+        try:
+            if mode == "a" and path.is_file() and not _begins_well(path):
+                raise UsageError(f"{path}: not a recording; give --record another file")
+            if mode == "a" and path.is_file() and not _ends_well(path):
+                raise UsageError(f"{path}: its last line is cut off; give --record another file")
+            self._file = path.open(mode, encoding="ascii")
+        except OSError as error:
+            raise UsageError(f"{path}: {error.strerror}; give --record a file that can be written") from error
+
+    def write(self, lines: Iterable[str]) -> None:
+        """Writes whole lines, at once.
+
+        Raises:
+            TilencaError: there is no room.
+        """
+        try:
+            self._file.writelines(lines)
+            self._file.flush()
+        except OSError as error:
+            raise TilencaError(
+                f"{self._path}: {error.strerror}; the recording ends here, give --record another file"
+            ) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *about: object) -> None:
+        with suppress(OSError):  # what could not be written has been told
+            self._file.close()
+
+
+def _begins_well(path: Path) -> bool:
+    with path.open("rb") as file:
+        first = file.readline(LONGEST)
+    try:
+        return not first or parse_event(first.decode("ascii")) is not None
+    except ValueError:
+        return not first.endswith(b"\n") and first.startswith(b'{"time": ')  # cut off in its first line
+
+
+def _ends_well(path: Path) -> bool:
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(size - 1, 0))
+        return file.read() in (b"", b"\n")
+
+
+def parse_event(line: str) -> Event:
+    """The event of a line.
+
+    Raises:
+        ValueError: it is none.
+    """
+    about = json.loads(line)
+    match about:
+        case {"time": float() | int() as time_s} if not 0 <= time_s <= LAST_S:
+            raise ValueError(f"{time_s} is no time in seconds since 1970")
+        case {"time": float() | int() as time_s, "port": str(port), "raw": str(text)}:
+            raw = text.encode(ENCODING)
+            return Heard(float(time_s), port, raw, parse_sentence(raw))
+        case {
+            "time": float() | int() as time_s,
+            "port": str(port),
+            "open": bool(is_open),
+            "reason": str(reason),
+        }:
+            return PortNews(float(time_s), port, is_open, reason)
+    raise ValueError("neither a line nor news of a port")
+
+
+class Choice:
+    """The events of a recording's ports that match patterns, and what it held."""
+
+    def __init__(self, path: Path, patterns: Sequence[str]) -> None:
+        self._path, self._patterns = path, patterns
+        self._ports: dict[str, bool] = {}
+        self._length_s = 0.0
+        self._complete = False
+
+    def __iter__(self) -> Iterator[Event]:
+        first_s: float | None = None
+        for event in read_recording(self._path):
+            if event.port not in self._ports:
+                self._ports[event.port] = self._matches(event.port)
+            if self._ports[event.port]:
+                first_s = event.time_s if first_s is None else first_s
+                self._length_s = max(self._length_s, event.time_s - first_s)
+                yield event
+        self._complete = True
+
+    def _matches(self, port: str) -> bool:
+        """By a port's whole name or the end of it: `tiles.toml` has names from `/` on."""
+        return not self._patterns or any(
+            fnmatch.fnmatchcase(port, pattern) or fnmatch.fnmatchcase(port, f"*/{pattern}")
+            for pattern in self._patterns
+        )
+
+    def complain(self, start_s: float) -> None:
+        """Says why nothing was shown of it, if so.
+
+        Raises:
+            NoDeviceError: no port matches.
+        """
+        if not self._complete:
+            return  # a person has ended it
+        if not self._ports:
+            warn(f"{self._path}: nothing is recorded in it")
+        elif not any(self._ports.values()):
+            raise NoDeviceError(
+                f"{self._path}: no port matches {' '.join(self._patterns)}; it has {', '.join(self._ports)}"
+            )
+        elif start_s > self._length_s:
+            warn(f"{self._path}: --from {start_s:g} is past its end, at {self._length_s:.1f} s")
+
+
+def read_recording(path: Path) -> Iterator[Event]:
+    """The events of a file, in its order.
+
+    Raises:
+        UsageError: the file cannot be read, or a line is no event; the message names the line.
+    """
+    try:
+        with path.open(encoding="ascii") as file:
+            for number, line in enumerate(file, start=1):
+                try:
+                    yield parse_event(line)
+                except ValueError as error:
+                    if not line.endswith("\n"):
+                        warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
+                        return
+                    raise UsageError(
+                        f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
+                    ) from error
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give a file that --record wrote") from error
+    except UnicodeDecodeError as error:
+        raise UsageError(f"{path}: not a recording; give a file that --record wrote") from error

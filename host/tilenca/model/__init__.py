@@ -1,0 +1,1 @@
+"""The trained model without PyTorch: its file, its integers, what it costs a tile, its C++."""

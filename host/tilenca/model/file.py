@@ -1,0 +1,203 @@
+"""A trained model on disk, readable without torch.
+
+A model is a directory: `model.json` (what it is), `weights.npz` (float and integer weights), and beside them
+`metrics.json` and `README.md` (the model card), which nothing reads back.
+"""
+
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.base.errors import UsageError
+from tilenca.base.paths import DEFAULT_MODEL
+from tilenca.protocol.checksums import crc16
+from tilenca.protocol.constants import MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
+from tilenca.shapes.glyphs import GLYPHS
+
+FORMAT = 1
+TAPS = 5  # own state, then N, E, S, W
+# For each array of weights: how many steps 1.0 has in the integer tile, and its largest value there.
+STEPS = {"w1": 64, "w2": 64, "w3": 128, "b1": 4096, "b2": 4096, "b3": 8192}
+LARGEST = {"w1": 127, "w2": 127, "w3": 127, "b1": 32767, "b2": 32767, "b3": 32767}
+MAX_WIDTH = 127
+
+
+def checkpoint_path(directory: Path, seed: int) -> Path:
+    """What a training run with this seed leaves in a model's directory until it is finished."""
+    return directory / f"checkpoint-{seed}.pt"
+
+
+def checkpoints(directory: Path) -> list[Path]:
+    """The checkpoints of an unfinished run."""
+    return sorted(directory.glob("checkpoint-*.pt"))
+
+
+# All that numpy and zipfile raise on bytes that are no archive of arrays.
+DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error)
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """The network's widths: 5 * channels -> hidden1 -> hidden2 -> channels."""
+
+    channels: int = 21
+    hidden1: int = 40
+    hidden2: int = 40
+
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        """The shape of every weight array, by name, in the order they are stored and hashed."""
+        return {
+            "w1": (self.hidden1, TAPS * self.channels),
+            "b1": (self.hidden1,),
+            "w2": (self.hidden2, self.hidden1),
+            "b2": (self.hidden2,),
+            "w3": (self.channels, self.hidden2),
+            "b3": (self.channels,),
+        }
+
+    @property
+    def max_classes(self) -> int:
+        """Classes that fit: one channel each, and channel 0 is the seed's."""
+        return self.channels - 1
+
+
+@dataclass(frozen=True)
+class Model:
+    """A network for one set of classes.
+
+    Attributes:
+        labels: the classes' characters; class k's score is channel `channels - len(labels) + k`.
+        dimensions: the network's widths.
+        integer: `w*` int8 and `b*` int16 in the units of docs/PROTOCOL.md section 4.
+        floats: the float32 weights they were rounded from, same names and shapes.
+        made: how it was made: recipe, seed, commit, shape files (free form, JSON).
+    """
+
+    labels: tuple[str, ...]
+    dimensions: Dimensions
+    integer: Mapping[str, NDArray[Any]]
+    floats: Mapping[str, NDArray[np.float32]]
+    made: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def model_id(self) -> int:
+        """16-bit id of dimensions, labels and integer weights: equal networks have equal ids."""
+        size = self.dimensions
+        head = bytes([FORMAT, size.channels, size.hidden1, size.hidden2]) + "".join(self.labels).encode(
+            "ascii"
+        )
+        return crc16(head + b"".join(self.integer[name].tobytes() for name in size.shapes()))
+
+    def save(self, directory: Path) -> None:
+        """Writes `model.json` and `weights.npz`; the same model gives the same bytes."""
+        directory.mkdir(parents=True, exist_ok=True)
+        arrays = {name: self.floats[name] for name in self.dimensions.shapes()}
+        arrays |= {f"int_{name}": self.integer[name] for name in self.dimensions.shapes()}
+        np.savez(directory / "weights.npz", **arrays)  # type: ignore[arg-type]
+        about = {
+            "format": FORMAT,
+            "model_id": f"{self.model_id:04X}",
+            "labels": list(self.labels),
+            **asdict(self.dimensions),
+            "made": dict(self.made),
+        }
+        (directory / "model.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+
+
+def load_model(directory: Path) -> Model:
+    """Reads a model directory.
+
+    Raises:
+        UsageError: no model, of another format, or damaged; the message names file and remedy.
+    """
+    about_path, weights_path = directory / "model.json", directory / "weights.npz"
+    try:
+        about = json.loads(about_path.read_text(encoding="utf-8"))
+    except OSError as error:
+        if checkpoints(directory):
+            raise UsageError(
+                f"{directory}: holds an unfinished training run; finish it with `tilenca train ... --resume`"
+            ) from error
+        raise UsageError(
+            f"{about_path}: {error.strerror}; give what `tilenca train` wrote, like {DEFAULT_MODEL}"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
+    if not isinstance(about, dict) or about.get("format") != FORMAT:
+        found = about.get("format") if isinstance(about, dict) else None
+        raise UsageError(f"{about_path}: model format {found!r}, this tilenca reads {FORMAT}; train again")
+    dimensions, labels = _description(about_path, about)
+    model = Model(labels, dimensions, *_weights(weights_path, dimensions), _made(about_path, about))
+    if about.get("model_id") != f"{model.model_id:04X}":
+        raise UsageError(
+            f"{weights_path}: the weights have id {model.model_id:04X}, {about_path.name} says "
+            f"{about.get('model_id')!r}; the two files do not belong together, train or check out again"
+        )
+    return model
+
+
+def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[str, ...]]:
+    widths: list[Any] = [about.get(key) for key in ("channels", "hidden1", "hidden2")]
+    if (
+        not all(type(width) is int and 1 <= width <= MAX_WIDTH for width in widths)
+        or widths[0] > MAX_CHANNELS
+    ):
+        raise UsageError(
+            f"{path}: channels, hidden1, hidden2 are {widths}; "
+            f"the most are {MAX_CHANNELS}, {MAX_WIDTH} and {MAX_WIDTH}"
+        )
+    dimensions = Dimensions(*widths)
+    labels = about.get("labels")
+    if not (isinstance(labels, list) and labels and all(isinstance(x, str) and x in GLYPHS for x in labels)):
+        raise UsageError(f"{path}: labels must be a list of characters that a 7-segment digit can show")
+    if len(labels) > dimensions.max_classes or len(set(labels)) != len(labels):
+        raise UsageError(
+            f"{path}: {len(labels)} labels; they must differ and be at most {dimensions.max_classes}"
+        )
+    return dimensions, tuple(labels)
+
+
+def _made(path: Path, about: dict[str, Any]) -> dict[str, Any]:
+    """How the model was made: free form, but for the recipe, whose settings decide how it is simulated."""
+    made = about.get("made", {})
+    if not isinstance(made, dict) or not isinstance(made.get("recipe", {}), dict):
+        raise UsageError(f"{path}: made, and made.recipe, must be objects; train or check out again")
+    return made
+
+
+def _weights(
+    path: Path, dimensions: Dimensions
+) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[np.float32]]]:
+    try:
+        archive = np.load(path, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise ValueError("not an .npz archive")
+        with archive:
+            arrays = {name: archive[name] for name in archive.files}
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror or error}; train or check out again") from error
+    except DAMAGED as error:
+        raise UsageError(f"{path}: damaged ({error}); train or check out again") from error
+    integer: dict[str, NDArray[Any]] = {}
+    floats: dict[str, NDArray[np.float32]] = {}
+    for name, shape in dimensions.shapes().items():
+        wanted = np.dtype(np.int8 if name.startswith("w") else "<i2")
+        integer[name] = _array(path, arrays, f"int_{name}", shape, wanted)
+        floats[name] = _array(path, arrays, name, shape, np.dtype("<f4"))
+    return integer, floats
+
+
+def _array(
+    path: Path, arrays: dict[str, Any], name: str, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> NDArray[Any]:
+    array = arrays.get(name)
+    if not isinstance(array, np.ndarray) or array.shape != shape or array.dtype != dtype:
+        raise UsageError(f"{path}: array '{name}' is missing or not {shape} of {dtype}; train again")
+    return array

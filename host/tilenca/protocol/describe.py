@@ -1,0 +1,88 @@
+"""Sentences in words that a person reads. Standard library only: PlatformIO's monitor uses it too."""
+
+import re
+
+from tilenca.protocol.sentences import (
+    AckSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    Sentence,
+    TileSentence,
+    TimeSentence,
+    type_of,
+)
+
+SHOWN_BYTES = 60
+_WHOLE = re.compile(r"-?[0-9]{1,9}")
+# Bits of MCUSR.
+RESET_CAUSES = ("power-on", "its reset pin", "brown-out", "watchdog", "JTAG")
+NAK_REASONS = {
+    "CHECKSUM": "damaged",
+    "LONG": "too long",
+    "UNKNOWN": "no such command",
+    "VALUE": "wrong field",
+    "EEPROM": "the EEPROM did not keep it",
+}
+
+
+def whole_number(text: str) -> int | None:
+    """The number that a person typed, in the digits of this program's own texts; None if it is none."""
+    return int(text) if _WHOLE.fullmatch(text) else None
+
+
+def printable(raw: bytes) -> str:
+    """Bytes as text that cannot disturb a terminal, cut to a readable length."""
+    text = repr(raw[:SHOWN_BYTES])[2:-1]
+    return text if len(raw) <= SHOWN_BYTES else f"{text}... ({len(raw)} bytes)"
+
+
+def reset_words(cause: int) -> str:
+    """The causes of a reset; "unknown" where no bit is set."""
+    return " and ".join(name for bit, name in enumerate(RESET_CAUSES) if cause >> bit & 1) or "unknown"
+
+
+def said(sentence: Sentence) -> str:
+    """Who says what: the tile's id, the sentence's name, and its words."""
+    return f"tile {sentence.tile} {type_of(sentence)} {words(sentence)}"
+
+
+def words(sentence: Sentence) -> str:
+    """What a sentence says, without the tile's id and the sentence's name."""
+    match sentence:
+        case TileSentence(_, uptime_ms, updates, label, links, _):
+            return f"shows {label or 'nothing'} update {updates} up {uptime_ms / 1000:.1f} s links {links}"
+        case LinkSentence():
+            return _link_words(sentence)
+        case HelloSentence():
+            return _hello_words(sentence)
+        case TimeSentence(_, _, compute_us, awake_permille, gap_us, stack_unused, dropped):
+            times = f"computes {compute_us} us awake {awake_permille / 10:.1f} % longest turn {gap_us} us"
+            return f"{times} stack {stack_unused} bytes unused {dropped} sentences dropped"
+        case ErrorSentence(_, _, code, text):
+            return f"{code} {text}"
+        case AckSentence(_, command, fields):
+            return " ".join((command, *fields))
+        case NakSentence(_, reason, command):
+            return f"{command or 'sentence'}: {NAK_REASONS.get(reason, reason)}"
+        case OtherVersionSentence():
+            return sentence.remedy
+
+
+def _hello_words(hello: HelloSentence) -> str:
+    model = f"model {hello.model_id:04X} ({hello.channels} channels, {hello.classes} classes)"
+    limit = f"{hello.updates} updates" if hello.updates else "for ever"
+    pace = f"every {hello.period_ms} ms {limit} brightness {hello.brightness}"
+    return (
+        f"protocol {hello.version} firmware {hello.firmware_id:08X} {model} {pace} "
+        f"reset by {reset_words(hello.reset_cause)}"
+    )
+
+
+def _link_words(link: LinkSentence) -> str:
+    counts = f"sent {link.sent} received {link.received} corrupt {link.corrupt} lost {link.lost}"
+    age = "never" if link.age_ms is None else f"{link.age_ms} ms"
+    text = f"{link.side} {counts} foreign {link.foreign} overruns {link.overruns} age {age}"
+    return text if link.neighbour is None else f"{text} from tile {link.neighbour} {link.neighbour_side}"

@@ -1,0 +1,307 @@
+"""The sentences on USB (docs/PROTOCOL.md section 3): text in, dataclasses out, and back.
+
+No port and no clock. `protocol.commands` has the host's sentences, `protocol.frames` the tiles' frames.
+"""
+
+import re
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from tilenca.base.sides import SIDES
+from tilenca.protocol.checksums import checksum
+from tilenca.protocol.constants import MAX_CHANNELS, PROTOCOL_VERSION
+
+
+@dataclass(frozen=True)
+class HelloSentence:
+    """What a tile says at boot and when asked.
+
+    Attributes:
+        tile: its id; 0: none was set.
+        updates: after so many it stops; 0: never.
+        reset_cause: MCUSR, as far as the tile knows it.
+        firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
+        brightness: 0..255.
+    """
+
+    version: int
+    tile: int
+    model_id: int
+    channels: int
+    classes: int
+    period_ms: int
+    updates: int
+    reset_cause: int
+    firmware_id: int
+    brightness: int
+
+
+@dataclass(frozen=True)
+class TileSentence:
+    """What a tile is and shows; `label` is empty while nothing is shown.
+
+    Attributes:
+        links: `NESW` with `-` for every silent side.
+        state: the state bytes as sent to the neighbours (message + 128), one per channel.
+    """
+
+    tile: int
+    uptime_ms: int
+    updates: int
+    label: str
+    links: str
+    state: bytes
+
+
+@dataclass(frozen=True)
+class LinkSentence:
+    """How one side's link does.
+
+    Attributes:
+        age_ms: of the last good frame; None before the first, as are the next two.
+        overruns: bytes lost for want of room; south: how often edges were, or were given up as noise.
+        neighbour: id of the tile that sent the last good frame; 0 if it has none.
+        neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
+    """
+
+    tile: int
+    uptime_ms: int
+    side: str
+    sent: int
+    received: int
+    corrupt: int
+    lost: int
+    foreign: int
+    age_ms: int | None
+    overruns: int
+    neighbour: int | None
+    neighbour_side: str | None
+
+
+@dataclass(frozen=True)
+class TimeSentence:
+    """Where a tile's time and memory go.
+
+    Attributes:
+        compute_us: the longest computation of an update since the last such sentence.
+        awake_permille: share of the time since then that the main loop did not sleep.
+        gap_us: the longest time from one turn of the main loop to the next since then.
+        stack_unused: bytes of the stack's room that were never used so far.
+        dropped: sentences dropped since boot, for want of room.
+    """
+
+    tile: int
+    uptime_ms: int
+    compute_us: int
+    awake_permille: int
+    gap_us: int
+    stack_unused: int
+    dropped: int
+
+
+@dataclass(frozen=True)
+class ErrorSentence:
+    """Something is wrong with a tile: a code word, and a text for people."""
+
+    tile: int
+    uptime_ms: int
+    code: str
+    text: str
+
+
+@dataclass(frozen=True)
+class AckSentence:
+    """A command was carried out: its name, and its fields as now in force."""
+
+    tile: int
+    command: str
+    fields: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class NakSentence:
+    """A command was not carried out; `command` is empty where the tile could not tell which it was."""
+
+    tile: int
+    reason: str
+    command: str = ""
+
+
+@dataclass(frozen=True)
+class OtherVersionSentence:
+    """A good sentence of a tile that speaks another version of the protocol than we do."""
+
+    version: int
+    tile: int
+
+    @property
+    def remedy(self) -> str:
+        """What it is and what to do about it."""
+        return (
+            f"speaks protocol {self.version}, these tools speak {PROTOCOL_VERSION}: "
+            "flash it with the firmware that belongs to them (tilenca flash)"
+        )
+
+
+Sentence: TypeAlias = (
+    HelloSentence
+    | TileSentence
+    | LinkSentence
+    | TimeSentence
+    | ErrorSentence
+    | AckSentence
+    | NakSentence
+    | OtherVersionSentence
+)
+
+
+def framed(text: str) -> bytes:
+    """`text` as a sentence on the wire: between `$` and `*`, with checksum and CR LF."""
+    body = text.encode("ascii")
+    return b"$%s*%02X\r\n" % (body, checksum(body))
+
+
+def format_sentence(sentence: Sentence) -> bytes:
+    """The sentence as a tile writes it, CR LF included.
+
+    Raises:
+        ValueError: of another version's sentences only the version is known.
+    """
+    fields: tuple[object, ...]
+    match sentence:
+        case HelloSentence() as hello:
+            fields = (
+                f"HELLO,{hello.version}",
+                hello.tile,
+                f"{hello.model_id:04X},{hello.channels},{hello.classes},{hello.period_ms},{hello.updates}",
+                f"{hello.reset_cause:02X},{hello.firmware_id:08X},{hello.brightness}",
+            )
+        case TileSentence(tile, uptime_ms, updates, label, links, state):
+            fields = ("TILE", tile, uptime_ms, updates, label, links, state.hex().upper())
+        case LinkSentence():
+            fields = ("LINK", *("" if value is None else value for value in vars(sentence).values()))
+        case TimeSentence():
+            fields = ("TIME", *vars(sentence).values())
+        case ErrorSentence(tile, uptime_ms, code, text):
+            fields = ("ERROR", tile, uptime_ms, code, text)
+        case AckSentence(tile, command, values):
+            fields = ("ACK", tile, command, *values)
+        case NakSentence(tile, reason, command):
+            fields = ("NAK", tile, reason, command)
+        case OtherVersionSentence(version):
+            raise ValueError(f"protocol {version} is not spoken here")
+    return framed(",".join(map(str, fields)))
+
+
+def _fields(*parts: str) -> re.Pattern[str]:
+    return re.compile(",".join(parts))
+
+
+_SENTENCE = re.compile(rb"\$([ -#%-)+-~]*)\*([0-9A-F]{2})")
+_NUMBER, _OPTIONAL, _SIDE = r"(\d{1,10})", r"(\d{0,10})", rf"([{SIDES}])"
+_WORD, _TEXT = r"([A-Z]{1,16})", r"([ -+\--~]*)"
+_HEX2, _HEX4, _HEX8 = (rf"([0-9A-F]{{{digits}}})" for digits in (2, 4, 8))
+_HELLO = _fields("HELLO", *[_NUMBER] * 2, _HEX4, *[_NUMBER] * 4, _HEX2, _HEX8, _NUMBER)
+_STATE = rf"((?:[0-9A-F]{{2}}){{1,{MAX_CHANNELS}}})"
+_TILE = _fields("TILE", *[_NUMBER] * 3, r"([!-+\--~]?)", r"([N-][E-][S-][W-])", _STATE)
+_LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
+_TIME = _fields("TIME", *[_NUMBER] * 7)
+_ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
+_ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")
+_NAK = _fields("NAK", _NUMBER, _WORD, _TEXT)
+# Sentences of other versions: any greeting, and the link report of version 1, for who joins later.
+_OTHER_HELLO = re.compile(rf"HELLO,{_NUMBER},{_NUMBER}(?:,.*)?")
+_LINK_1 = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL)
+
+
+def parse_sentence(line: bytes | str) -> Sentence | None:
+    """The sentence that a line is, or None if it is anything else: noise, damaged, or of an unknown name.
+
+    Never raises, whatever the line holds. White space around the sentence (CR LF) is ignored.
+    """
+    raw = line.encode("ascii", "replace") if isinstance(line, str) else line
+    match = _SENTENCE.fullmatch(raw.strip())
+    if match is None or checksum(match[1]) != int(match[2], 16):
+        return None
+    text = match[1].decode("ascii")
+    parse = _PARSERS.get(text.partition(",")[0])
+    return parse(text) if parse else None
+
+
+def _hello(text: str) -> Sentence | None:
+    if (found := _HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
+        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
+            found.groups()
+        )
+        numbers = int(channels), int(classes), int(period_ms), int(updates)
+        ids = int(cause, 16), int(firmware, 16), int(light)
+        return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
+    if (found := _OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
+        return OtherVersionSentence(int(found[1]), int(found[2]))
+    return None
+
+
+def _tile(text: str) -> Sentence | None:
+    if (found := _TILE.fullmatch(text)) is None:
+        return None
+    tile, uptime_ms, updates, label, links, state = found.groups()
+    return TileSentence(int(tile), int(uptime_ms), int(updates), label, links, bytes.fromhex(state))
+
+
+def _link(text: str) -> Sentence | None:
+    if found := _LINK.fullmatch(text):
+        tile, uptime_ms, side, *counts, age, overruns, neighbour, neighbour_side = found.groups()
+        sent, received, corrupt, lost, foreign = map(int, counts)
+        return LinkSentence(
+            int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign,
+            int(age) if age else None, int(overruns), int(neighbour) if neighbour else None, neighbour_side,
+        )  # fmt: skip
+    return OtherVersionSentence(1, int(found[1])) if (found := _LINK_1.fullmatch(text)) else None
+
+
+def _time(text: str) -> Sentence | None:
+    return TimeSentence(*map(int, found.groups())) if (found := _TIME.fullmatch(text)) else None
+
+
+def _error(text: str) -> Sentence | None:
+    found = _ERROR.fullmatch(text)
+    return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
+
+
+def _ack(text: str) -> Sentence | None:
+    if (found := _ACK.fullmatch(text)) is None:
+        return None
+    return AckSentence(int(found[1]), found[2], tuple(found[3].split(",")[1:]))
+
+
+def _nak(text: str) -> Sentence | None:
+    found = _NAK.fullmatch(text)
+    return NakSentence(int(found[1]), found[2], found[3]) if found else None
+
+
+_PARSERS = {
+    "HELLO": _hello,
+    "TILE": _tile,
+    "LINK": _link,
+    "TIME": _time,
+    "ERROR": _error,
+    "ACK": _ack,
+    "NAK": _nak,
+}
+
+
+TYPES = {
+    HelloSentence: "HELLO",
+    TileSentence: "TILE",
+    LinkSentence: "LINK",
+    TimeSentence: "TIME",
+    ErrorSentence: "ERROR",
+    AckSentence: "ACK",
+    NakSentence: "NAK",
+    OtherVersionSentence: "OTHER",
+}
+
+
+def type_of(sentence: Sentence) -> str:
+    """The sentence's name on the wire; `OTHER` for one of another protocol version."""
+    return TYPES[type(sentence)]

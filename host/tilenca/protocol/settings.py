@@ -1,0 +1,51 @@
+"""The block of settings that a tile keeps in EEPROM (docs/PROTOCOL.md section 5)."""
+
+from dataclasses import dataclass
+
+from tilenca.protocol.checksums import crc16
+from tilenca.protocol.constants import (
+    CRC_SIZE,
+    MAX_BRIGHTNESS,
+    MAX_PERIOD_MS,
+    MIN_PERIOD_MS,
+    SETTING_RANGES,
+    SETTINGS_SIZE,
+    SETTINGS_VERSION,
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """A tile's settings in EEPROM; `tile_id` 0 means not set, `updates` 0 for ever."""
+
+    tile_id: int
+    period_ms: int
+    updates: int
+    brightness: int = MAX_BRIGHTNESS
+
+
+def settings_block(tile_id: int, period_ms: int, updates: int, brightness: int = MAX_BRIGHTNESS) -> bytes:
+    """The block of docs/PROTOCOL.md section 5 that a tile reads from EEPROM address 0.
+
+    Raises:
+        ValueError: a value is out of range.
+    """
+    values = {"id": tile_id, "period": period_ms, "updates": updates, "brightness": brightness}
+    for name, value in values.items():
+        low, high = SETTING_RANGES[name]
+        if not low <= value <= high:
+            raise ValueError(f"{name} {value}: must be {low}..{high}")
+    body = b"TN" + bytes([SETTINGS_VERSION, tile_id])
+    body += period_ms.to_bytes(2, "little") + updates.to_bytes(2, "little") + bytes([brightness, 0])
+    return body + crc16(body).to_bytes(CRC_SIZE, "little")
+
+
+def parse_settings(block: bytes) -> Settings | None:
+    """The settings in a block of SETTINGS_SIZE bytes, or None if a tile would ignore it."""
+    body, crc = block[:-CRC_SIZE], block[-CRC_SIZE:]
+    if len(block) != SETTINGS_SIZE or body[:3] != b"TN" + bytes([SETTINGS_VERSION]) or body[9] != 0:
+        return None
+    period_ms = int.from_bytes(body[4:6], "little")
+    if crc16(body) != int.from_bytes(crc, "little") or not MIN_PERIOD_MS <= period_ms <= MAX_PERIOD_MS:
+        return None
+    return Settings(body[3], period_ms, int.from_bytes(body[6:8], "little"), body[8])

@@ -1,0 +1,213 @@
+"""Shape files: the drawings that a model tells apart.
+
+A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows, `#` a tile and `.` or a blank
+none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
+labels in order of first appearance. A table `[sizes]` says at what other sizes the task's drawings keep their
+class (`tilenca.shapes.sizes`).
+"""
+
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tilenca.base.errors import UsageError
+from tilenca.base.paths import DEFAULT_SHAPES
+from tilenca.base.sides import STEPS
+from tilenca.shapes.cells import TILE, cells_of, connected
+from tilenca.shapes.glyphs import GLYPHS
+from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
+from tilenca.shapes.stretch import stretch
+
+EMPTY = ".", " "
+UNKNOWN = "-"  # the label of what belongs to no class
+
+_HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
+_GRID = re.compile(r"""\s*grid\s*=\s*(?P<quotes>\"{3}|'{3})?(?P<row>.*?)\s*$""")
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One drawing.
+
+    Attributes:
+        label: the character its tiles show.
+        rows: the drawing, rectangular, `#` and `.` only, without empty border rows or columns.
+        name: the label, or `label@k` for the k-th drawing (from 2) of the same label.
+    """
+
+    label: str
+    rows: tuple[str, ...]
+    name: str
+
+    @property
+    def grid(self) -> str:
+        """The drawing as text, rows joined by newlines."""
+        return "\n".join(self.rows)
+
+    @property
+    def cells(self) -> tuple[tuple[int, int], ...]:
+        """(row, column) of every tile in reading order."""
+        return cells_of(self.rows)
+
+    def stretched(self, size: Size, up: bool = True) -> "Shape | None":
+        """The drawing at another size (`tilenca.shapes.stretch`), None if it cannot be drawn that small."""
+        rows = stretch(self.rows, *size, up)
+        return None if rows is None else Shape(self.label, rows, f"{self.name} {size_name(size)}")
+
+    def neighbours(self) -> list[list[int]]:
+        """For every tile the indices into `cells` of its N, E, S, W neighbour, -1 for none."""
+        index = {cell: number for number, cell in enumerate(self.cells)}
+        return [[index.get((row + dr, col + dc), -1) for dr, dc in STEPS] for row, col in self.cells]
+
+
+@dataclass(frozen=True)
+class Task:
+    """All shapes of one file and the classes they form."""
+
+    path: Path
+    shapes: tuple[Shape, ...]
+    labels: tuple[str, ...]
+    sizes: Sizes = field(default_factory=Sizes)
+
+    def class_of(self, shape: Shape) -> int:
+        """Index of the shape's label among the task's classes."""
+        return self.labels.index(shape.label)
+
+    def find(self, name: str) -> Shape:
+        """The shape called `name` (`4`, or `4@2` for the second drawing of "4").
+
+        Raises:
+            UsageError: the file has none; the message lists what it has.
+        """
+        for shape in self.shapes:
+            if shape.name == name:
+                return shape
+        names = " ".join(shape.name for shape in self.shapes)
+        raise UsageError(f"{self.path}: no shape '{name}'; it has: {names}")
+
+
+def load_task(path: Path, max_classes: int | None = None) -> Task:
+    """Reads and checks a shape file.
+
+    Args:
+        path: the TOML file.
+        max_classes: how many classes the model's state has room for; None: not checked.
+
+    Raises:
+        UsageError: the file cannot be read or is not a valid task; the message names file, line and remedy.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give a shape file, such as {DEFAULT_SHAPES}") from error
+    except UnicodeDecodeError as error:
+        raise UsageError(f"{path}: not UTF-8 text at byte {error.start}; save the file as UTF-8") from error
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UsageError(f"{path}: not valid TOML: {error}") from error
+    tables = document.pop("shape", None)
+    sizes = read_sizes(path, document.pop("sizes", {}))
+    if document:
+        raise UsageError(
+            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables and [sizes]"
+        )
+    if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
+        raise UsageError(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
+    return replace(_task(path, tables, list(_table_lines(text)), max_classes), sizes=sizes)
+
+
+def _task(
+    path: Path, tables: list[dict[str, object]], lines: list[tuple[int, int]], max_classes: int | None
+) -> Task:
+    shapes: list[Shape] = []
+    labels: list[str] = []
+    for number, table in enumerate(tables):
+        # Tables written in an unusual form (inline, quoted keys) have no known line: name their number.
+        header, grid_line = lines[number] if len(lines) == len(tables) else (0, 0)
+        where = f"{path}:{header}" if header else f"{path}: shape {number + 1}"
+        label = _label(where, table, labels)
+        rows = _rows(
+            where, f"{path}:{grid_line}" if grid_line else where, grid_line, label, table.get("grid")
+        )
+        if label not in labels:
+            labels.append(label)
+        if max_classes is not None and len(labels) > max_classes:
+            raise UsageError(
+                f"{where}: '{label}' is class {len(labels)}, the model's state has room for {max_classes}; "
+                "draw fewer classes or train with a wider --state"
+            )
+        for other in shapes:
+            if other.rows == rows:
+                raise UsageError(
+                    f"{where}: '{label}' is drawn exactly like '{other.name}'; remove or redraw one"
+                )
+        drawn = sum(other.label == label for other in shapes)
+        shapes.append(Shape(label, rows, label if drawn == 0 else f"{label}@{drawn + 1}"))
+    return Task(path, tuple(shapes), tuple(labels))
+
+
+def _label(where: str, table: dict[str, object], labels: list[str]) -> str:
+    unknown = [key for key in table if key not in ("label", "grid")]
+    if unknown:
+        raise UsageError(f"{where}: unknown key '{unknown[0]}'; a shape has a label and a grid")
+    label = table.get("label")
+    if not isinstance(label, str) or label not in GLYPHS:
+        shown = "missing" if label is None else repr(label)
+        quoted = isinstance(label, int) and str(label) in GLYPHS
+        remedy = f'write "{label}", in quotes' if quoted else f"a 7-segment digit shows {''.join(GLYPHS)}"
+        raise UsageError(f"{where}: label {shown}; {remedy}")
+    for other in labels:
+        if other != label and GLYPHS[other] == GLYPHS[label]:
+            raise UsageError(
+                f"{where}: labels '{label}' and '{other}' look the same on a 7-segment digit; rename one"
+            )
+    return label
+
+
+def _rows(where: str, grid_where: str, grid_line: int, label: str, grid: object) -> tuple[str, ...]:
+    if not isinstance(grid, str):
+        raise UsageError(f'{where}: shape \'{label}\' has no grid; add grid = """..."""')
+    rows = [row.rstrip("\r") for row in grid.split("\n")]
+    drawn = [index for index, row in enumerate(rows) if row.strip()]
+    # Blank rows above and below are how the text is laid out; between others they are part of the drawing.
+    numbered = [(index, rows[index]) for index in range(drawn[0], drawn[-1] + 1)] if drawn else []
+    for index, row in numbered:
+        line = f"{grid_where.rsplit(':', 1)[0]}:{grid_line + index}" if grid_line else where
+        for column, mark in enumerate(row):
+            if mark != TILE and mark not in EMPTY:
+                raise UsageError(
+                    f"{line}: shape '{label}', column {column + 1}: unknown character {mark!r}; "
+                    "use '#' for a tile and '.' for none"
+                )
+        if len(row) != len(numbered[0][1]):
+            raise UsageError(
+                f"{line}: shape '{label}' has ragged rows ({len(row)} characters, the first row has "
+                f"{len(numbered[0][1])}); make all rows equally long"
+            )
+    marks = ["".join(TILE if mark == TILE else "." for mark in row) for _, row in numbered]
+    cells = cells_of(marks)
+    if not cells:
+        raise UsageError(f"{grid_where}: shape '{label}' has no tile; draw at least one '#'")
+    if not connected(cells):
+        raise UsageError(f"{grid_where}: shape '{label}' is not connected; tiles must touch by their sides")
+    top, bottom = cells[0][0], cells[-1][0]
+    left, right = min(c for _, c in cells), max(c for _, c in cells)
+    return tuple(row[left : right + 1] for row in marks[top : bottom + 1])
+
+
+def _table_lines(text: str) -> Iterator[tuple[int, int]]:
+    """For every `[[shape]]` header its line and the line of its grid's first text row (0: not found)."""
+    header = grid = 0
+    for number, line in enumerate(text.split("\n"), start=1):
+        if _HEADER.match(line):
+            if header:
+                yield header, grid
+            header, grid = number, 0
+        elif header and not grid and (opening := _GRID.match(line)):
+            # TOML drops a newline that directly follows the opening quotes: row 0 is then on the next line.
+            grid = number + 1 if opening["quotes"] and not opening["row"] else number
+    if header:
+        yield header, grid

@@ -1,0 +1,117 @@
+"""At what sizes a task's drawings keep their class: the table `[sizes]` of a shape file.
+
+[sizes]
+from = "5x3"                     # rows x columns; the drawings are stretched to every size from here
+to = "12x10"                     # to here, and trained on
+more = ["15x13"]                 # and to these
+held_out = ["8x5", "20x16"]      # but not to these: they measure what a model makes of a new size
+drawn = ["digits-3x3.toml"]      # files with the same classes, drawn by hand, beside this one
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tilenca.base.errors import UsageError
+
+Size = tuple[int, int]  # rows, columns
+
+LARGEST = 100
+KEYS = ("from", "to", "more", "held_out", "drawn")
+_SIZE = re.compile(r"(\d{1,3})x(\d{1,3})")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Sizes of a task beside those of its own drawings.
+
+    Attributes:
+        trained: sizes the drawings are stretched to.
+        more: single larger ones, which are not asked about.
+        held_out: sizes kept for measuring.
+        drawn: files of drawings at other sizes.
+    """
+
+    trained: tuple[Size, ...] = ()
+    more: tuple[Size, ...] = ()
+    held_out: tuple[Size, ...] = ()
+    drawn: tuple[Path, ...] = ()
+
+    def within(self, size: Size, factor: float) -> "Sizes":
+        """Those of at most `factor` times as many rows and columns as `size`; none for a factor of 1."""
+
+        def fits(other: Size) -> bool:
+            return factor > 1 and other[0] <= factor * size[0] and other[1] <= factor * size[1]
+
+        trained, more, held_out = (
+            tuple(filter(fits, part)) for part in (self.trained, self.more, self.held_out)
+        )
+        return Sizes(trained, more, held_out, self.drawn)
+
+
+def size_name(size: Size) -> str:
+    """Rows x columns, as people write it."""
+    return f"{size[0]}x{size[1]}"
+
+
+def parse_size(text: str) -> Size:
+    """Rows and columns of `5x4`.
+
+    Raises:
+        ValueError: it is not a size from 1x1 to 100x100.
+    """
+    match = _SIZE.fullmatch(text)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not all(1 <= side <= LARGEST for side in size):
+        raise ValueError(f"{text!r} is not a size of 1x1 to {LARGEST}x{LARGEST}, like 5x4 (rows x columns)")
+    return size
+
+
+def read_sizes(path: Path, table: object) -> Sizes:
+    """Checks the table of a shape file.
+
+    Raises:
+        UsageError: an unknown key or not a size; the message names the file, the key and the remedy.
+    """
+    if not isinstance(table, dict):
+        raise UsageError(f"{path}: sizes must be a table; write [sizes] on a line of its own")
+    unknown = [key for key in table if key not in KEYS]
+    if unknown:
+        raise UsageError(f"{path}: [sizes] has no '{unknown[0]}'; it has {', '.join(KEYS)}")
+    if ("from" in table) != ("to" in table):
+        raise UsageError(f"{path}: [sizes] has one of from and to; give both or neither")
+    held_out = tuple(_size(path, "held_out", text) for text in _texts(path, table, "held_out"))
+    trained: list[Size] = []
+    if "from" in table:
+        least, most = (_size(path, key, table[key]) for key in ("from", "to"))
+        if not (least[0] <= most[0] and least[1] <= most[1]):
+            raise UsageError(f"{path}: [sizes] from {size_name(least)} is larger than to {size_name(most)}")
+        trained = [
+            (rows, columns)
+            for rows in range(least[0], most[0] + 1)
+            for columns in range(least[1], most[1] + 1)
+            if (rows, columns) not in held_out
+        ]
+    drawn = tuple(path.parent / name for name in _texts(path, table, "drawn"))
+    more = tuple(_size(path, "more", text) for text in _texts(path, table, "more"))
+    for size in more:
+        if size in held_out:
+            raise UsageError(
+                f"{path}: [sizes] {size_name(size)} is in more and in held_out; take it out of one"
+            )
+    return Sizes(tuple(trained), more, held_out, drawn)
+
+
+def _texts(path: Path, table: dict[str, object], key: str) -> Sequence[str]:
+    texts = table.get(key, [])
+    if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
+        raise UsageError(f'{path}: [sizes] {key} must be a list of texts, like ["..."]')
+    return texts
+
+
+def _size(path: Path, key: str, text: object) -> Size:
+    try:
+        return parse_size(text if isinstance(text, str) else str(text))
+    except ValueError as error:
+        raise UsageError(f"{path}: [sizes] {key}: {error}") from error

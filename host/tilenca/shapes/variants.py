@@ -1,0 +1,189 @@
+"""Drawings made from drawings: damaged ones that keep their class, and ones that belong to no class.
+
+Everything here works on rows of `#` and `.`, trimmed to the tiles. numpy only.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+import numpy as np
+
+from tilenca.base.sides import STEPS
+from tilenca.shapes.cells import cells_of, connected, removable
+from tilenca.shapes.stretch import Rows, smallest
+
+Cell = tuple[int, int]
+GIVE_UP = 300  # draws in a row that bring nothing new
+
+
+def rows_of(cells: Iterable[Cell]) -> Rows:
+    """The drawing of these tiles, trimmed."""
+    rows, cols = zip(*(tiles := list(cells)), strict=True)
+    top, left = min(rows), min(cols)
+    drawing = [bytearray(b"." * (max(cols) - left + 1)) for _ in range(max(rows) - top + 1)]
+    for row, col in tiles:
+        drawing[row - top][col - left] = ord("#")
+    return tuple(row.decode() for row in drawing)
+
+
+def without_one(rows: Rows) -> Iterator[Rows]:
+    """The drawing without one of its tiles, for every tile that leaves the others connected."""
+    cells = cells_of(rows)
+    for gone in removable(cells):
+        if rest := [cell for cell in cells if cell != gone]:
+            yield rows_of(rest)
+
+
+class Known:
+    """What a task's drawings say of others: which class a drawing has, whole or damaged.
+
+    Args:
+        drawings: (label, rows) of every drawing of the task, all sizes.
+    """
+
+    def __init__(self, drawings: Iterable[tuple[str, Rows]]) -> None:
+        self._drawings = list(drawings)
+        self.forms: dict[Rows, str] = {}
+        self._claims: dict[Rows, set[str]] = {}
+        for label, rows in self._drawings:
+            self.forms.setdefault(smallest(rows), label)
+            for less in without_one(rows):
+                self._claims.setdefault(less, set()).add(label)
+
+    def damaged(self, label: str, rows: Rows) -> list[Rows]:
+        """`rows` with one tile missing, where that is neither another whole drawing nor another's damage."""
+        return [
+            less
+            for less in dict.fromkeys(without_one(rows))
+            if self._claims.get(less, set()) == {label} and smallest(less) not in self.forms
+        ]
+
+    def lookalikes(self) -> dict[str, list[str]]:
+        """For every label those that it looks like when the wrong tile is missing: damage nobody can see."""
+        found: dict[str, set[str]] = {}
+        for label, rows in self._drawings:
+            for less in without_one(rows):
+                if (other := self.forms.get(smallest(less), label)) != label:
+                    found.setdefault(label, set()).add(other)
+        return {label: sorted(others) for label, others in found.items()}
+
+    def is_known(self, rows: Rows) -> bool:
+        """Whether a drawing is one of the task's, at any size, or one with a tile missing or too many."""
+        return (
+            rows in self._claims
+            or smallest(rows) in self.forms
+            or any(smallest(less) in self.forms for less in without_one(rows))
+        )
+
+
+def grown(random: np.random.Generator, tiles: int, height: int, width: int) -> Rows:
+    """A random connected drawing of at most `tiles` tiles within `height` x `width`."""
+    return _grow(random, tiles, {(row, col) for row in range(height) for col in range(width)})
+
+
+def half(random: np.random.Generator, rows: Rows) -> Rows:
+    """A random connected half of a drawing."""
+    cells = cells_of(rows)
+    return _grow(random, max(1, len(cells) // 2), set(cells))
+
+
+def edited(random: np.random.Generator, rows: Rows, edits: int) -> Rows | None:
+    """The drawing with some tiles put down or taken away; None where that tears it apart."""
+    height, width = len(rows), len(rows[0])
+    tiles = set(cells_of(rows))
+    for _ in range(edits):
+        tiles ^= {(int(random.integers(-1, height + 1)), int(random.integers(-1, width + 1)))}
+    return rows_of(tiles) if tiles and connected(tiles) else None
+
+
+def segments(drawings: Sequence[Rows]) -> list[frozenset[Cell]]:
+    """The straight strokes between corners and junctions of all drawings laid on each other.
+
+    Of the ten digits these are the seven segments of a 7-segment digit.
+    """
+    tiles = {cell for rows in drawings for cell in cells_of(rows)}
+    nodes = {cell for cell in tiles if not _straight(tiles, cell)}
+    found = set()
+    for node in nodes:
+        for down, right in STEPS:
+            stroke, cell = [node], (node[0] + down, node[1] + right)
+            while cell in tiles and cell not in nodes:
+                stroke.append(cell)
+                cell = (cell[0] + down, cell[1] + right)
+            if cell in tiles:
+                found.add(frozenset((*stroke, cell)))
+    return sorted(found, key=sorted)
+
+
+def some_segments(random: np.random.Generator, strokes: Sequence[frozenset[Cell]]) -> Rows | None:
+    """A random connected choice of strokes; None where the choice is empty or torn."""
+    share = random.uniform(0.2, 0.9)
+    tiles = {cell for stroke in strokes if random.random() < share for cell in stroke}
+    return rows_of(tiles) if tiles and connected(tiles) else None
+
+
+def held_out(rows: Rows) -> bool:
+    """Whether a drawing of no class is kept from training, to measure with: a quarter of all, by content."""
+    return sum(index * ord(mark) for index, mark in enumerate("/".join(rows), start=1)) % 4 == 0
+
+
+def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Rows], bool]) -> list[Rows]:
+    """Draws until there are `wanted` different drawings that fit, or hardly a new one turns up."""
+    seen: set[Rows] = set()
+    found: list[Rows] = []
+    idle = 0
+    while len(found) < wanted and idle < GIVE_UP:
+        rows = draw()
+        idle += 1
+        if rows is not None and rows not in seen:
+            seen.add(rows)
+            idle = 0
+            if fits(rows):
+                found.append(rows)
+    return found
+
+
+# Given drawings, draws one after the other of those made from them; None where a try came to nothing.
+Drawer = Callable[[Sequence[Rows], np.random.Generator], Callable[[], Rows | None]]
+
+
+def some_grown(
+    drawings: Sequence[Rows], random: np.random.Generator, least: int = 3
+) -> Callable[[], Rows | None]:
+    """Random drawings of about the size of the given ones, of `least` tiles or more if those have as many."""
+    height, width = max(map(len, drawings)), max(len(rows[0]) for rows in drawings)
+    most = max(sum(row.count("#") for row in rows) for rows in drawings)
+    return lambda: grown(random, int(random.integers(min(least, most), most + 1)), height + 1, width + 1)
+
+
+def some_halves(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Halves of any of the drawings."""
+    return lambda: half(random, drawings[int(random.integers(len(drawings)))])
+
+
+def some_edited(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Any of the drawings with four to seven edits."""
+    return lambda: edited(random, drawings[int(random.integers(len(drawings)))], int(random.integers(4, 8)))
+
+
+def some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Callable[[], Rows | None]:
+    """Other choices of the drawings' strokes."""
+    strokes = segments(drawings)
+    return lambda: some_segments(random, strokes)
+
+
+def _grow(random: np.random.Generator, tiles: int, room: set[Cell]) -> Rows:
+    """Tiles put down one after the other, each beside one that lies there already."""
+    everywhere = sorted(room)
+    front = [everywhere[int(random.integers(len(everywhere)))]]
+    grown: set[Cell] = set()
+    while front and len(grown) < tiles:
+        cell = front.pop(int(random.integers(len(front))))
+        grown.add(cell)
+        around = ((cell[0] + down, cell[1] + right) for down, right in STEPS)
+        front += [near for near in around if near in room and near not in grown and near not in front]
+    return rows_of(grown)
+
+
+def _straight(tiles: set[Cell], cell: Cell) -> bool:
+    north, east, south, west = ((cell[0] + down, cell[1] + right) in tiles for down, right in STEPS)
+    return (north and south and not east and not west) or (east and west and not north and not south)

@@ -1,0 +1,75 @@
+"""What every tile of a drawing shows, step by step: a run of the fast simulator, kept to be looked at."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.model.file import Model
+from tilenca.shapes.batch import Drawings
+from tilenca.shapes.file import Shape
+from tilenca.simulator.engine import FastEngine
+from tilenca.simulator.simulator import Conditions, Schedule, Simulator
+
+NOTHING = -1
+
+
+@dataclass(frozen=True)
+class Film:
+    """One run.
+
+    Attributes:
+        shape: the drawing.
+        labels: the model's classes.
+        shown: (T + 1, N) int64, the class that each tile of `shape.cells` shows at the start and after each
+            step, NOTHING before its first update.
+        about: what else there is to say of the run, for a caption.
+    """
+
+    shape: Shape
+    labels: tuple[str, ...]
+    shown: NDArray[np.int64]
+    about: str
+
+    @property
+    def right(self) -> NDArray[np.bool_]:
+        """(T + 1,) whether every tile shows the drawing's label."""
+        right: NDArray[np.bool_] = (self.shown == self.labels.index(self.shape.label)).all(axis=1)
+        return right
+
+    @property
+    def agreed_at(self) -> int | None:
+        """The step from which every tile is right to the end; None: it does not come."""
+        wrong = np.flatnonzero(~self.right)
+        settled = 0 if len(wrong) == 0 else int(wrong[-1]) + 1
+        return settled if settled < len(self.shown) else None
+
+
+def record(model: Model, drawings: Drawings, number: int, steps: int, schedule: Schedule, seed: int) -> Film:
+    """Lets one drawing run; all tiles are switched on at step 0.
+
+    Args:
+        model: what the tiles run.
+        drawings: the task.
+        number: which of the drawings.
+        steps: updates per tile.
+        schedule: see `tilenca.simulator.simulator.Conditions`.
+        seed: the same seed gives the same film.
+
+    Raises:
+        BuildError: the simulator is not built.
+    """
+    tissue = Simulator(
+        FastEngine(model),
+        drawings,
+        np.array([number], np.int64),
+        Conditions(schedule, boot=0.0),
+        np.random.default_rng(seed),
+    )
+
+    pictures = [np.full((1, tissue.cells), NOTHING, np.int8)]
+    if (shown := tissue.run(steps, record=True).shown) is not None:
+        pictures.append(shown)
+    updates = "every tile on its own clock" if schedule == "clock" else "random updates, as in the paper"
+    about = f"model {model.model_id:04X}, {updates}, seed {seed}; a step is one update per tile"
+    return Film(drawings.shapes[number], model.labels, np.concatenate(pictures).astype(np.int64), about)

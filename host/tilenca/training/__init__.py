@@ -1,0 +1,1 @@
+"""Training in PyTorch; the only room that imports torch."""

@@ -1,0 +1,56 @@
+"""Checkpoints: a training run in a file, whole or not at all."""
+
+import io
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from tilenca.base.errors import UsageError
+
+State = dict[str, Any]
+
+
+def write_checkpoint(path: Path, config: State, state: State) -> None:
+    """Writes a checkpoint; an interrupted write leaves the one before.
+
+    Args:
+        path: the file.
+        config: decides the result, plain values.
+        state: plain values and tensors.
+
+    Raises:
+        OSError: the disk is full or not writable.
+    """
+    buffer = io.BytesIO()
+    torch.save({"config": config, **state}, buffer)  # on a full disk torch raises what does not say so
+    partial = path.with_suffix(".part")
+    try:
+        partial.write_bytes(buffer.getbuffer())
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
+    """The state that was written, its tensors on `device`.
+
+    Raises:
+        UsageError: there is none, it is damaged, or of another configuration.
+    """
+    try:
+        state: State = torch.load(path, map_location=device, weights_only=True)
+        theirs: State = state["config"]
+    except FileNotFoundError as error:
+        raise UsageError(f"{path}: nothing to resume; train without --resume") from error
+    except Exception as error:  # torch raises whatever its unpickler met
+        raise UsageError(
+            f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
+        ) from error
+    for key, value in config.items():
+        if theirs.get(key) != value:
+            raise UsageError(
+                f"{path}: made with another {key}; give the arguments of the run to resume, or train "
+                "into another directory"
+            )
+    return state

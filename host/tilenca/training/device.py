@@ -1,0 +1,22 @@
+"""Whether PyTorch and the device that is asked for are there."""
+
+from tilenca.base.errors import UsageError
+
+
+def check_device(device: str) -> None:
+    """Checks before long work that it can be done.
+
+    Args:
+        device: `cpu` or `cuda`.
+
+    Raises:
+        UsageError: PyTorch is not installed, or has no such device; the message says what to do.
+    """
+    try:
+        import torch
+    except ImportError as error:
+        raise UsageError("training needs PyTorch, which is not installed; run: make setup-train") from error
+    if device not in ("cpu", "cuda"):
+        raise UsageError(f"--device {device}: use cpu or cuda")
+    if device == "cuda" and not torch.cuda.is_available():
+        raise UsageError("--device cuda: PyTorch finds no CUDA device here; use --device cpu")

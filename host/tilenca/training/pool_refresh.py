@@ -1,0 +1,107 @@
+"""Tissues live ahead by the weights that are kept: training meets states that only come with age, or rarely.
+
+A batch sees some ten updates of a tissue, and between two batches the weights change: what drifts slowly
+under one set of weights hardly shows. The fast simulator lets the quiet tissues live for thousands of updates
+by the integers that tiles would run, and training goes on from where that led. It also lets many drawings
+begin, be rebuilt, lose a tile for a while, or begin in states of others, until they should agree: the few
+that do not are what training has to see.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.model.file import Model
+from tilenca.protocol.constants import STATE_MAX
+from tilenca.shapes.batch import Drawings
+from tilenca.simulator.engine import SEED_STATE, FastEngine
+from tilenca.simulator.simulator import Conditions, Fault, Simulator
+from tilenca.simulator.transitions import moved
+from tilenca.training.pool import Pool, Pools, States
+
+ROUNDS_PER_STEP = 3  # of training, about as many as a period of a tile takes there
+CLOCKS = Conditions("clock", boot=0.0)
+BEGINNINGS = (Conditions("random"), Conditions("clock"), Conditions("clock", loss=0.5))
+BEFORE, AGREED_BY = 50, 60  # steps that a drawing lives before something happens, and that it has to agree
+MOST_STUCK = 1 / 8  # of the busy pool
+
+
+def as_integers(states: States) -> NDArray[np.int16]:
+    """The same states as tiles store them."""
+    return np.rint(states * SEED_STATE).clip(-STATE_MAX, STATE_MAX).astype(np.int16)
+
+
+def live_ahead(
+    model: Model, pool: Pool, drawings: Drawings, steps: tuple[int, int], random: np.random.Generator
+) -> None:
+    """Lets all tissues of a pool live for some steps on tiles' clocks, without losses.
+
+    Args:
+        model: by which they live.
+        pool: the tissues; states and ages are changed.
+        drawings: those that `pool.drawing` counts.
+        steps: least and most; the number is drawn evenly on a scale of ratios.
+        random: the only source of chance.
+    """
+    least, most = map(math.log, steps)
+    count = round(math.exp(random.uniform(least, most)))
+    batch = drawings.batch(pool.drawing)
+    states = as_integers(pool.states[batch.sample, batch.place])
+    simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states)
+    simulator.run(count)
+    pool.states[batch.sample, batch.place] = simulator.states / np.float32(SEED_STATE)
+    pool.age += count * ROUNDS_PER_STEP
+
+
+def put_what_is_stuck(model: Model, pools: Pools, runs: int, random: np.random.Generator) -> int:
+    """Puts whole drawings that do not agree in time into the busy pool, in the state they came to.
+
+    Args:
+        model: by which they live.
+        pools: where they go.
+        runs: drawings of the files to try in each way, beside some of other sizes.
+        random: the only source of chance.
+
+    Returns:
+        How many did not agree.
+    """
+    stuck = []
+    for trial in _trials(FastEngine(model), pools, runs, random):
+        wrong = ~trial.run(AGREED_BY).agreed[-1]
+        for run in np.flatnonzero(wrong):
+            cells = trial.batch.sample == run
+            stuck.append((trial.chosen[run], trial.states[cells] / np.float32(SEED_STATE)))
+    most = round(len(pools.busy.age) * MOST_STUCK)
+    for number in random.permutation(len(stuck))[:most]:
+        pools.put(*stuck[number])
+    return len(stuck)
+
+
+def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Generator) -> Iterator[Simulator]:
+    """Whole drawings that begin, are rebuilt, get a tile back, or are put together from tiles of others."""
+    drawings = pools.drawings
+
+    def some() -> NDArray[np.int64]:
+        return np.concatenate((pools.pick_whole(runs, drawn=True), pools.pick_whole(runs // 3)))
+
+    for conditions in BEGINNINGS:
+        yield Simulator(engine, drawings, some(), conditions, random)
+
+    new = some()
+    old = np.array([pools.pick_other(drawing) for drawing in new])
+    built = Simulator(engine, drawings, old, Conditions("clock"), random)
+    built.run(BEFORE)
+    stays = [drawings.overlap(int(a), int(b), random) for a, b in zip(old, new, strict=True)]
+    yield Simulator(engine, drawings, new, CLOCKS, random, moved(engine, built, stays))
+
+    chosen = pools.pick_whole(runs, drawn=True)
+    away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
+    back = Simulator(engine, drawings, chosen, Conditions("clock"), random, fault=away)
+    back.run(BEFORE)
+    yield back
+
+    chosen = some()
+    states = as_integers(pools.any_states(int(drawings.sizes[chosen].sum())))
+    yield Simulator(engine, drawings, chosen, CLOCKS, random, states)

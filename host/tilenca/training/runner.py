@@ -1,0 +1,216 @@
+"""One seed's training from start, or checkpoint, to end; alone or beside others in processes of their own."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from tilenca.base.errors import InterruptedRunError, TilencaError
+from tilenca.base.signals import SIGNALS
+from tilenca.evaluation.metrics import Examiner
+from tilenca.evaluation.suites import Exam, set_exam
+from tilenca.model.file import checkpoint_path
+from tilenca.shapes.batch import Drawings
+from tilenca.shapes.sizes import Sizes
+from tilenca.simulator.engine import FastEngine
+from tilenca.training.curriculum import build
+from tilenca.training.progress import Progress, Tell
+from tilenca.training.recipes import aims_of
+from tilenca.training.rollout import use_threads
+from tilenca.training.trainer import Config, Trained, Trainer, model_of
+
+CHECKPOINT_EVERY_S = 45.0
+TELL_EVERY_S = 0.2
+CHECK_RUNS = 10  # of each drawing in the measurements during training
+CLOSER_RUNS = 40  # of each drawing where all targets held with fewer
+HOLDS_TO_END = 3  # of them in a row in which all targets must hold to end early
+ENDING = (signal.SIGINT, *SIGNALS)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one process trains.
+
+    Attributes:
+        config: of the run; its labels are those of the curriculum.
+        task: the drawings of the files.
+        sizes: of the task.
+        device: `cpu` or `cuda`.
+        out: where checkpoints go.
+        resume: whether to go on from a checkpoint.
+        threads: how many processors it may use; the result does not depend on it.
+    """
+
+    config: Config
+    task: Drawings
+    sizes: Sizes
+    device: str
+    out: Path
+    resume: bool
+    threads: int = 1
+
+    @property
+    def checkpoint(self) -> Path:
+        """The file that a run resumes from."""
+        return checkpoint_path(self.out, self.config.seed)
+
+
+def make_trainer(job: Job) -> Trainer:
+    """The trainer of a job, at its beginning or at its checkpoint."""
+    use_threads(job.threads)
+    config = job.config
+    curriculum = build(job.task, config.recipe, job.sizes, np.random.default_rng(config.seed))
+    trainer = Trainer(config, curriculum, torch.device(job.device))
+    if job.resume and job.checkpoint.exists():
+        trainer.load(job.checkpoint)
+    return trainer
+
+
+def train(job: Job, tell: Tell) -> Trained:
+    """Trains to the end.
+
+    Raises:
+        InterruptedRunError: Ctrl-C; everything done so far is in the checkpoint.
+        TilencaError: training diverged, or the checkpoint is of no use.
+    """
+    with _interruptible() as interrupted:
+        trainer = make_trainer(job)
+        recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
+        check: tuple[int, int, float] | None = None
+        exam = set_exam(job.task, job.sizes, job.config.labels, aims_of(job.config.recipe), job.config.seed)
+        while not trainer.done:
+            trainer.step()
+            if recipe.check_every and trainer.iteration % recipe.check_every == 0:
+                check = _check(trainer, exam)
+            if interrupted() or time.monotonic() - saved > CHECKPOINT_EVERY_S:
+                trainer.save(job.checkpoint)
+                saved = time.monotonic()
+            if interrupted():
+                raise InterruptedRunError(f"at iteration {trainer.iteration}")
+            if time.monotonic() - told > TELL_EVERY_S or trainer.done:
+                tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
+                told = time.monotonic()
+        trainer.save(job.checkpoint)  # measuring takes a while, and can be interrupted too
+        return trainer.best()
+
+
+def _check(trainer: Trainer, exam: Exam) -> tuple[int, int, float]:
+    """A short measurement; ends the training when all targets held several times in a row."""
+    model, _ = model_of(trainer.now(), {})
+    for runs in (CHECK_RUNS, CLOSER_RUNS):
+        rows = list(Examiner(FastEngine(model), exam, runs, trainer.config.seed + runs).short_rows())
+        if shortfall := sum(row.shortfall for row in rows):
+            break
+    shares = {row.key: min(other.share for other in rows if other.key == row.key) for row in rows}
+    trainer.measured(shortfall, shares)
+    last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
+    trainer.ended = len(last) == HOLDS_TO_END and not any(last)
+    asked = [row for row in rows if row.target is not None]
+    return sum(row.holds for row in asked), len(asked), shortfall
+
+
+def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[str]:
+    """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
+
+    Returns:
+        What went wrong, one line for each run that failed; the others went on to their end.
+
+    Raises:
+        InterruptedRunError: Ctrl-C; every run that had begun has its checkpoint.
+    """
+    failures: list[str] = []
+    if at_once == 1 or len(jobs) == 1:
+        for job in jobs:
+            try:
+                train(job, tell)
+            except InterruptedRunError:
+                raise
+            except (TilencaError, OSError) as error:
+                failures.append(f"seed {job.config.seed}: {error}")
+        return failures
+    context = multiprocessing.get_context("spawn")
+    waiting = list(jobs)
+    running: dict[Connection, SpawnProcess] = {}
+    with _interruptible() as interrupted:
+        while waiting or running:
+            while waiting and len(running) < at_once and not interrupted():
+                job = waiting.pop(0)
+                ours, theirs = context.Pipe(duplex=False)
+                process = context.Process(target=_in_process, args=(job, theirs), daemon=True)
+                with _deaf_to_ctrl_c():  # until it can save its work, it is ended by us
+                    process.start()
+                theirs.close()
+                running[ours] = process
+            for connection in wait(list(running), timeout=0.5):
+                assert isinstance(connection, Connection)
+                try:
+                    news = connection.recv()
+                except EOFError:
+                    process = running.pop(connection)
+                    process.join()
+                    if process.exitcode and not interrupted():
+                        failures.append(f"a training process ended with {process.exitcode}")
+                    continue
+                if isinstance(news, Progress):
+                    tell(news)
+                else:
+                    failures.append(news)
+            if interrupted():
+                waiting.clear()
+                for process in running.values():
+                    if process.pid is not None and process.is_alive():
+                        os.kill(process.pid, signal.SIGTERM)
+        if interrupted():
+            raise InterruptedRunError("while training")
+    return failures
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """What is started in here ignores Ctrl-C, until it says otherwise."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _in_process(job: Job, connection: "Connection") -> None:
+    """The body of a process: progress goes through the connection, and so does a failure's text."""
+    try:
+        train(job, connection.send)
+    except InterruptedRunError:
+        pass
+    except (TilencaError, OSError) as error:
+        connection.send(f"seed {job.config.seed}: {error}")
+    finally:
+        connection.close()
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Ctrl-C waits for the end of the step, so that what is saved is whole; a second one does not."""
+    caught: list[int] = []
+
+    def note(number: int, _frame: object) -> None:
+        caught.append(number)
+        if number == signal.SIGINT:
+            signal.signal(number, signal.default_int_handler)
+
+    # What whoever started us ignores (nohup) stays ignored; Ctrl-C is ours.
+    heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, note) for number in heeded}
+    try:
+        yield lambda: bool(caught)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

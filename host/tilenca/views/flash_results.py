@@ -1,0 +1,55 @@
+"""What became of each board that was flashed, as a table or a document."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tilenca.base.stdio import warn
+from tilenca.fleet.identify import Answer
+from tilenca.views.table import table
+
+GOOD = {"flashed", "skipped"}
+HEADER = ("PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY")
+
+
+@dataclass
+class Row:
+    """What became of one tile: `board` is what `tiles.toml` calls it, `firmware_id` what it says it runs."""
+
+    port: str | None
+    result: str = "interrupted"
+    seconds: float = 0.0
+    error: str | None = "interrupted; flash it again"
+    tile: int | None = None
+    board: str = ""
+    attempts: int = 0
+    firmware_id: str | None = None
+
+    def end(self, result: str, error: str | None = None) -> None:
+        """Sets what became of it."""
+        self.result, self.error = result, error
+
+    def hear(self, answer: Answer) -> None:
+        """Takes what the tile says of itself."""
+        if answer.hello:
+            self.firmware_id = f"{answer.hello.firmware_id:08X}"
+            self.tile = self.tile or answer.hello.tile or None
+
+    @property
+    def cells(self) -> list[str]:
+        """Its row under HEADER; there are no seconds where avrdude was never started."""
+        seconds = f"{self.seconds:.1f}" if self.attempts else "-"
+        tile = str(self.tile or "-")
+        return [self.port or "-", tile, self.result, seconds, self.firmware_id or "-", self.error or ""]
+
+
+def tell(rows: Sequence[Row], as_json: bool) -> None:
+    """Prints what became of them, and how many were flashed."""
+    if as_json:
+        print(json.dumps({"tiles": [vars(row) for row in rows]}, indent=2))
+    elif rows:
+        print(table(HEADER, [row.cells for row in rows]))
+    if rows:
+        results = [row.result for row in rows]
+        skipped = f", {results.count('skipped')} ran it already" if "skipped" in results else ""
+        warn(f"{results.count('flashed')} of {len(results)} flashed{skipped}")

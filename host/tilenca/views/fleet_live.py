@@ -1,0 +1,117 @@
+"""The monitor's live picture: a line about all tiles, the tiles in their places, the log of what happens."""
+
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Sequence
+from pathlib import PurePath
+from textwrap import wrap
+
+from rich.console import Console, ConsoleOptions, OverflowMethod, RenderResult
+from rich.live import Live
+from rich.segment import Segment
+from rich.text import Text
+
+from tilenca.fleet.events import News, Reporter, clock_text, news_line
+from tilenca.fleet.grid import Cell, Grid, Position
+from tilenca.fleet.state import Event, Fleet
+from tilenca.views.fleet_grid import draw_fitting
+from tilenca.views.fleet_table import live_table
+
+REDRAW_S = 0.25
+LOG_LINES = 200
+LEAST_LOG = 4
+RATE_S = 2.0
+
+
+class LiveView:
+    """Shows the fleet on a terminal; enter `live` while it does."""
+
+    def __init__(self, fleet: Fleet, grid: Grid, console: Console, table: bool, about: str = "") -> None:
+        """Will draw the grid, or with `table` one line per port; `about` says what is replayed.
+
+        `footer` may be set, to a function that gives what is to stand below.
+        """
+        self._fleet, self._grid, self._table, self._about = fleet, grid, table, about
+        self._console = console
+        self._overflow: OverflowMethod = "crop" if console.options.ascii_only else "ellipsis"
+        self.footer: Callable[[], str] = str
+        self._reporter = Reporter(fleet)
+        self._log: deque[News] = deque(maxlen=LOG_LINES)
+        self._counted: deque[tuple[float, int]] = deque(maxlen=2 + round(RATE_S / REDRAW_S))
+        self._now_s = self._shown_s = 0.0
+        self.live = Live(console=console, auto_refresh=False, get_renderable=lambda: _Screen(self))
+
+    def show(self, now_s: float, events: Sequence[Event]) -> None:
+        """Takes what is new; draws now and then, and at once after a pause."""
+        self._now_s = now_s
+        for event in events:
+            self._log.extend(self._reporter.take(event))
+        if time.monotonic() - self._shown_s >= REDRAW_S:
+            self._shown_s = time.monotonic()
+            self.live.refresh()
+
+    def begin_again(self) -> None:
+        """Forgets all that was shown: it is played from the beginning."""
+        self._fleet.tiles.clear()
+        self._reporter = Reporter(self._fleet)
+        self._log.clear()
+        self._counted.clear()
+
+    def lines(self, width: int, height: int) -> list[Text]:
+        """The whole picture, no wider and no higher than that."""
+        grid = self._grid.cells(self._fleet, self._now_s)
+        footer = [Text(line, style="dim") for line in wrap(self.footer(), width)][: max(height - 1, 0)]
+        height -= len(footer)
+        body = self._body(grid, width, height - 1 - LEAST_LOG)
+        room = max(height - len(body) - 2, 0)
+        log = [self._log_line(news) for news in list(self._log)[-room:]] if room else []
+        lines = [self._head(grid), *body, *log][: max(height, 0)] + footer
+        for line in lines:
+            line.truncate(width, overflow=self._overflow)
+        return lines
+
+    def _body(self, grid: dict[Position, Cell], width: int, height: int) -> list[Text]:
+        if not self._table:
+            picture = draw_fitting(grid, width, height, self._console.options.ascii_only)
+            if picture is not None:
+                return picture
+        options = self._console.options.update(width=width, height=None)
+        rendered = self._console.render_lines(
+            live_table(self._fleet, self._now_s, self._overflow), options, pad=False
+        )
+        return [Text.assemble(*((part.text, part.style or "") for part in line)) for line in rendered][
+            :height
+        ]
+
+    def _head(self, grid: dict[Position, Cell]) -> Text:
+        cells = grid.values()
+        shown = Counter(cell.label for cell in cells if cell.label is not None and not cell.trouble)
+        views = self._fleet.tiles.values()
+        self._counted.append((time.monotonic(), sum(view.sentences for view in views)))
+        (first_s, first), (last_s, last) = self._counted[0], self._counted[-1]
+        parts = [
+            f"{len(cells)} tiles",
+            ", ".join(f"{count} show {label or 'nothing'}" for label, count in shown.most_common()),
+            *(f"{count} {what}" for what, count in Counter(c.trouble for c in cells if c.trouble).items()),
+            f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
+            f"{sum(view.damaged for view in views)} damaged",
+            self._about or clock_text(self._now_s)[:-4],
+        ]
+        return Text("  ".join(filter(None, parts)), style="bold")
+
+    def _log_line(self, news: News) -> Text:
+        # The folder of a port tells nothing, and on a narrow terminal hides what is told.
+        return Text(news_line(news, PurePath(news.port).name), "yellow" if news.bad else "")
+
+
+class _Screen:
+    """What Live draws: as much as fits the terminal as it is now."""
+
+    def __init__(self, view: LiveView) -> None:
+        self._view = view
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        width, height = console.size
+        for line in self._view.lines(width, height - 1):
+            yield from line.render(console)
+            yield Segment.line()

@@ -1,0 +1,134 @@
+"""Tiles as a picture in the terminal: each its 7-segment digit, in its place and colour."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rich.console import Console, Group
+from rich.text import Text
+
+from tilenca.shapes.file import Shape
+from tilenca.shapes.glyphs import draw
+
+# Box-drawing characters by their arms: 1 up, 2 right, 4 down, 8 left.
+LIGHT = " ╵╶╰╷│╭├╴╯─┴╮┤┬┼"
+HEAVY = " ╹╺┗╻┃┏┣╸┛━┻┓┫┳╋"
+UP, RIGHT, DOWN, LEFT = 1, 2, 4, 8
+
+TILE_WIDTH = 5
+PALENESS = 60
+SHAPE_GAP = "  "
+# A housing of its own, so that a digit can be read on any terminal's background.
+HOUSING = "on rgb(28,28,28)"
+FRAME = f"rgb(88,88,88) {HOUSING}"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What the tiles of a shape show at one moment, in the order of `shape.cells`."""
+
+    shape: Shape
+    segments: tuple[int, ...]
+    colours: tuple[tuple[int, int, int], ...]
+
+
+def led_style(colour: tuple[int, int, int]) -> str:
+    """The LED's hue, brighter than the dim LEDs are, and paler, since pure blue is hard to read."""
+    strongest = max(colour)
+    if strongest == 0:
+        return HOUSING
+    red, green, blue = (PALENESS + round((255 - PALENESS) * duty / strongest) for duty in colour)
+    return f"rgb({red},{green},{blue}) {HOUSING}"
+
+
+def digit(segments: int) -> tuple[str, str, str]:
+    """Three rows of three characters: the lit segments as lines that meet at their ends."""
+    a, b, c, d, e, f, g = (segments >> bit & 1 for bit in range(7))
+    return (
+        HEAVY[RIGHT * a + DOWN * f] + HEAVY[(LEFT + RIGHT) * a] + HEAVY[LEFT * a + DOWN * b],
+        HEAVY[UP * f + RIGHT * g + DOWN * e]
+        + HEAVY[(LEFT + RIGHT) * g]
+        + HEAVY[UP * b + LEFT * g + DOWN * c],
+        HEAVY[UP * e + RIGHT * d] + HEAVY[(LEFT + RIGHT) * d] + HEAVY[LEFT * d + UP * c],
+    )
+
+
+def framed(picture: Picture) -> list[Text]:
+    """The picture as lines of equal width; tiles have a frame, and touching ones share its sides."""
+    height, width = len(picture.shape.rows), len(picture.shape.rows[0])
+    tiles = dict(zip(picture.shape.cells, zip(picture.segments, picture.colours, strict=True), strict=True))
+
+    # Sides of tiles between the corners of the lattice: from (row, col) to the right, and downwards.
+    def across(row: int, col: int) -> bool:
+        return (row, col) in tiles or (row - 1, col) in tiles
+
+    def down(row: int, col: int) -> bool:
+        return (row, col) in tiles or (row, col - 1) in tiles
+
+    def border(row: int) -> Text:
+        line = Text()
+        for col in range(width + 1):
+            arms = UP * down(row - 1, col) + RIGHT * across(row, col)
+            arms += DOWN * down(row, col) + LEFT * across(row, col - 1)
+            line.append(LIGHT[arms], FRAME if arms else "")
+            if col < width:
+                drawn = across(row, col)
+                line.append(LIGHT[(LEFT + RIGHT) * drawn] * TILE_WIDTH, FRAME if drawn else "")
+        return line
+
+    def inside(row: int, part: int) -> Text:
+        line = Text()
+        for col in range(width + 1):
+            drawn = down(row, col)
+            line.append(LIGHT[(UP + DOWN) * drawn], FRAME if drawn else "")
+            if (row, col) in tiles:
+                segments, colour = tiles[row, col]
+                line.append(digit(segments)[part].center(TILE_WIDTH), led_style(colour))
+            elif col < width:
+                line.append(" " * TILE_WIDTH)
+        return line
+
+    lines = [
+        line for row in range(height) for line in (border(row), *(inside(row, part) for part in range(3)))
+    ]
+    return [*lines, border(height)]
+
+
+def compact(picture: Picture) -> list[Text]:
+    """The picture without frames, in ASCII: for small terminals and old encodings."""
+    height, width = len(picture.shape.rows), len(picture.shape.rows[0])
+    drawn = [[Text("    ") for _ in range(width)] for _ in range(height * 3)]
+    for (row, col), segments, colour in zip(
+        picture.shape.cells, picture.segments, picture.colours, strict=True
+    ):
+        for part, text in enumerate(draw(segments) if segments else ("   ", " . ", "   ")):
+            drawn[3 * row + part][col] = Text.assemble((text, led_style(colour)), " ")
+    return [Text.assemble(*line) for line in drawn]
+
+
+def beside(pictures: Sequence[Picture], console: Console, width: int, height: int | None = None) -> Group:
+    """Pictures next to each other, as many as fit into `width` characters, the rest below.
+
+    Args:
+        pictures: what to show.
+        console: where; it decides which characters there are.
+        width: characters in a line.
+        height: lines that there are; None: as many as it takes.
+    """
+    blocks = list(map(framed, pictures))
+    if console.options.ascii_only or (height is not None and max(map(len, blocks)) >= height):
+        blocks = list(map(compact, pictures))
+    bands: list[list[list[Text]]] = [[]]
+    for block in blocks:
+        used = sum(len(other[0]) + len(SHAPE_GAP) for other in bands[-1])
+        if bands[-1] and used + len(block[0]) > width:
+            bands.append([])
+        bands[-1].append(block)
+    output = []
+    for band in bands:
+        for number in range(max(len(block) for block in band)):
+            parts = [block[number] if number < len(block) else Text(" " * len(block[0])) for block in band]
+            line = Text(SHAPE_GAP).join(parts)
+            line.rstrip()
+            output.append(line)
+        output.append(Text(""))
+    return Group(*output)

@@ -1,0 +1,331 @@
+"""The exporter: what it renders, what it refuses, and that it never leaves half a job."""
+
+import json
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from firmware.synthetic_models import random_network
+from tilenca.base import paths
+from tilenca.base.errors import BuildError
+from tilenca.cli import main
+from tilenca.model import cost, packing, render
+from tilenca.model.file import Dimensions, Model
+from tilenca.shapes.glyphs import GLYPHS
+
+SIZE = Dimensions(5, 7, 6)
+HEADER, SOURCE = render.TEMPLATES.values()
+
+
+@pytest.fixture
+def model() -> Model:
+    return replace(random_network(SIZE, 127, seed=3), labels=("4", "b", "-"))
+
+
+@pytest.fixture
+def model_directory(model: Model, tmp_path: Path) -> Path:
+    model.save(tmp_path / "model")
+    return tmp_path / "model"
+
+
+@pytest.fixture
+def firmware(tmp_path: Path) -> Path:
+    """A firmware folder to render into, with the headers that rendered files include."""
+    shutil.copytree(paths.FIRMWARE / "include" / "core", tmp_path / "firmware" / "include" / "core")
+    return tmp_path / "firmware"
+
+
+def run(*arguments: str | Path) -> int:
+    return main(["export", *map(str, arguments)])
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_the_committed_files_are_the_shipped_model() -> None:
+    assert run("--model", paths.DEFAULT_MODEL, "--check") == 0
+
+
+def test_the_same_model_renders_to_the_same_text(model: Model) -> None:
+    assert render.render(model) == render.render(model)
+
+
+def test_the_compiled_files_hold_exactly_the_model(
+    model: Model, model_directory: Path, firmware: Path, tmp_path: Path
+) -> None:
+    """A small program prints what the rendered files hold, and it is read back."""
+    assert run("--model", model_directory, "--out", firmware) == 0
+    probe = tmp_path / "probe.cpp"
+    probe.write_text(
+        """
+        #include <stdio.h>
+        #include "model/model.h"
+        using namespace tilenca;
+        void print(const Layer& layer) {
+            for (int j = 0; j < layer.outputs; ++j) {
+                Layer::Row row = layer.row(j);
+                for (int i = 0; i < layer.inputs; ++i) printf("%d ", row.next());
+            }
+            for (int j = 0; j < layer.outputs; ++j) printf("%d ", layer.bias(j));
+            for (int j = 0; j < layer.outputs; j += kPassOutputs) printf("%d ", layer.narrow(j));
+            printf("\\n");
+        }
+        int main() {
+            const Model& m = model::kModel;
+            print(m.network.hidden1); print(m.network.hidden2); print(m.network.output);
+            for (int k = 0; k < m.classes; ++k) {
+                const Look look = m.looks[k];
+                printf("%c %d %d %d %d\\n", look.label, look.segments, look.red, look.green, look.blue);
+            }
+            printf("%04X\\n", m.id);
+        }
+        """
+    )
+    program = tmp_path / "probe"
+    source = firmware / SOURCE
+    subprocess.run(
+        [
+            "g++",
+            "-std=c++14",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            f"-I{firmware}/include",
+            probe,
+            source,
+            "-o",
+            program,
+        ],
+        check=True,
+    )
+    lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
+    for layer, line in zip((1, 2, 3), lines[:3], strict=True):
+        values = np.array(line.split(), dtype=np.int64)
+        narrow = np.array([part.narrow for part in packing.passes(model, layer)])
+        expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
+        np.testing.assert_array_equal(values, np.concatenate(expected))
+    looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]
+    assert lines[3:] == [*looks, f"{model.model_id:04X}"]
+
+
+def test_a_digit_has_its_own_colour_wherever_it_stands() -> None:
+    assert render.looks_of(("7", "0"))[0].colour == render.looks_of(tuple("0123456789"))[7].colour
+
+
+def test_report_as_json(
+    model: Model, model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [str(firmware / HEADER), str(firmware / SOURCE)]
+    assert run("--model", model_directory, "--out", firmware, "--json") == 0
+    report = json.loads(capsys.readouterr().out)
+    weights = sum(17 + 8 * inputs for inputs in (25, 7, 6))  # one pass each
+    assert report == {
+        "files": files,
+        "flash_bytes": weights + 3 * 5,
+        "model_id": f"{model.model_id:04X}",
+        "narrow_outputs": [0, 0, 0],
+        "written": files,
+    }
+    assert run("--model", model_directory, "--out", firmware, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["written"] == []
+
+
+def test_check_names_what_differs_and_changes_nothing(
+    model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = contents(firmware)
+    assert run("--model", model_directory, "--out", firmware, "--check") == 1
+    assert contents(firmware) == before
+    error = capsys.readouterr().err
+    assert str(firmware / HEADER) in error
+    assert str(firmware / SOURCE) in error
+    assert run("--model", model_directory, "--out", firmware) == 0
+    assert run("--model", model_directory, "--out", firmware, "--check") == 0
+    with (firmware / SOURCE).open("a") as file:
+        file.write("// mine\n")
+    capsys.readouterr()
+    assert run("--model", model_directory, "--out", firmware, "--check", "--json") == 1
+    output = capsys.readouterr()
+    assert json.loads(output.out)["differing"] == [str(firmware / SOURCE)]
+    assert re.fullmatch(
+        r"tilenca: .*model\.cpp: not what .* renders to; run: tilenca export .*\n", output.err
+    )
+
+
+def test_another_model_replaces_rendered_files(model_directory: Path, firmware: Path, tmp_path: Path) -> None:
+    replace(random_network(SIZE, 9, seed=4), labels=("1", "2")).save(tmp_path / "other")
+    assert run("--model", tmp_path / "other", "--out", firmware) == 0
+    assert run("--model", model_directory, "--out", firmware) == 0
+    assert run("--model", model_directory, "--out", firmware, "--check") == 0
+
+
+def test_current_files_are_not_touched(model_directory: Path, firmware: Path) -> None:
+    assert run("--model", model_directory, "--out", firmware) == 0
+    before = (firmware / SOURCE).stat()
+    assert run("--model", model_directory, "--out", firmware) == 0
+    assert (firmware / SOURCE).stat().st_mtime_ns == before.st_mtime_ns
+    assert (firmware / SOURCE).stat().st_ino == before.st_ino
+
+
+@pytest.mark.parametrize(
+    "edit", [lambda text: text + "\n", lambda text: text.replace("kLayer1", "kLayer0", 1)]
+)
+def test_a_file_edited_by_hand_is_kept_unless_forced(
+    edit: "type[str]", model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("--model", model_directory, "--out", firmware) == 0
+    source = firmware / SOURCE
+    source.write_text(edit(source.read_text()))
+    (firmware / HEADER).unlink()
+    before = contents(firmware)
+    capsys.readouterr()
+    assert run("--model", model_directory, "--out", firmware) == 4
+    assert contents(firmware) == before
+    assert f"{source}: was edited by hand; move it away or pass --force" in capsys.readouterr().err
+    assert run("--model", model_directory, "--out", firmware, "--force") == 0
+    assert run("--model", model_directory, "--out", firmware, "--check") == 0
+
+
+@pytest.mark.parametrize("content", [b"int mine;\n", b"\xff\xfe binary", b""])
+def test_a_foreign_file_is_kept(
+    content: bytes, model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    foreign = firmware / SOURCE
+    foreign.parent.mkdir(parents=True)
+    foreign.write_bytes(content)
+    before = contents(firmware)
+    assert run("--model", model_directory, "--out", firmware) == 4
+    assert contents(firmware) == before
+    assert "pass --force" in capsys.readouterr().err
+
+
+def test_nothing_is_written_where_a_file_is_in_the_way_of_a_folder(
+    model_directory: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (firmware / "src").write_text("a file, not a folder")
+    before = contents(firmware)
+    assert run("--model", model_directory, "--out", firmware) == 4
+    assert contents(firmware) == before
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("out", ["nowhere", "a-file"])
+def test_a_missing_folder_is_named(
+    out: str, model_directory: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a-file").write_text("x")
+    assert run("--model", model_directory, "--out", tmp_path / out) == 4
+    assert (
+        capsys.readouterr().err
+        == f"tilenca: {tmp_path / out}: no such folder; give the firmware's folder to --out\n"
+    )
+
+
+def test_a_read_only_folder_is_named(model_directory: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """/proc refuses new files even from root."""
+    assert run("--model", model_directory, "--out", "/proc") == 4
+    assert re.fullmatch(r"tilenca: /proc/.*: .*; make /proc writable .*\n", capsys.readouterr().err)
+
+
+def test_a_directory_that_is_no_model_is_a_usage_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("--model", tmp_path) == 2
+    assert "model.json" in capsys.readouterr().err
+
+
+def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> packing.Pass:
+    """The only pass of a layer with these weights."""
+    model = random_network(Dimensions(1, 1, 1), 1)
+    integer = dict(model.integer)
+    integer[f"w{layer}"], integer[f"b{layer}"] = np.array(weights, np.int8), np.array(biases, np.int16)
+    (found,) = packing.passes(replace(model, integer=integer), layer)
+    return found
+
+
+def test_the_bounds_of_a_pass_are_those_of_its_outermost_outputs() -> None:
+    found = one_layer([[127, -127], [1, 2]], [0, -32768], layer=1)
+    assert (found.least, found.most) == (-3 * 127 - 32768 + 32, 2 * 127 * 127 + 32)
+    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=2)
+    assert (found.least, found.most) == (7 - 127 * 127 + 32, 7 + 127 * 127 + 32), (
+        "activations are not negative"
+    )
+    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=3)
+    assert (found.least, found.most) == (7 - 127 * 127, 7 + 127 * 127), "nothing is rounded"
+
+
+@pytest.mark.parametrize(
+    ("weights", "bias", "layer", "narrow"),
+    [
+        ([127, 127], 32767 - 2 * 127 * 127, 3, True),
+        ([127, 127], 32768 - 2 * 127 * 127, 3, False),
+        ([127, 127], 32767 - 2 * 127 * 127 - 32, 2, True),
+        ([127, 127], 32767 - 2 * 127 * 127 - 31, 2, False),
+        ([-127, -127], -32768 + 2 * 127 * 127, 3, True),
+        ([-127, -127], -32769 + 2 * 127 * 127, 3, False),
+        ([-127, 127], -32769 + 2 * 127 * 127, 3, True),
+        ([-127, 127], -32769 + 2 * 127 * 127 - 32, 1, False),
+    ],
+)
+def test_16_bits_are_used_where_no_input_can_make_them_wrap(
+    weights: list[int], bias: int, layer: int, narrow: bool
+) -> None:
+    assert one_layer([weights], [bias], layer).narrow is narrow
+    assert one_layer([[0, 0], weights], [0, bias], layer).narrow is narrow, "the worst output decides"
+
+
+def test_the_exporter_says_which_sums_have_16_bits(
+    model: Model, firmware: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    integer = {
+        name: array // 64 if name in ("w2", "b2", "w3", "b3") else array
+        for name, array in model.integer.items()
+    }
+    replace(model, integer=integer).save(tmp_path / "small")
+    assert run("--model", tmp_path / "small", "--out", firmware) == 0
+    assert "sums of 16 bits: layer 2 0..5, layer 3 0..4; of 24 bits: all others\n" in capsys.readouterr().out
+    assert run("--model", tmp_path / "small", "--out", firmware, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["narrow_outputs"] == [0, 6, 5]
+
+
+def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No model file can reach 24 bits; a narrower accumulator would wrap with this one."""
+    render.check_fits(model)
+    monkeypatch.setattr(render, "ACCUMULATOR_MAX", 2**15 - 1)
+    with pytest.raises(BuildError, match="layer 1 could add up to"):
+        render.check_fits(model)
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (Dimensions(52, 40, 40), "52 channels"),
+        (Dimensions(21, 128, 40), "128"),
+        (Dimensions(21, 40, 300), "300"),
+    ],
+)
+def test_a_model_too_wide_for_the_firmware_is_refused(size: Dimensions, words: str) -> None:
+    with pytest.raises(BuildError, match=words):
+        render.check_fits(random_network(size, 9))
+
+
+def test_a_weight_of_minus_128_is_refused() -> None:
+    model = random_network(SIZE, 9)
+    model.integer["w2"][3, 3] = -128
+    with pytest.raises(BuildError, match="w2 has a weight of -128"):
+        render.check_fits(model)
+
+
+def test_the_widest_model_of_the_largest_weights_fits() -> None:
+    size = Dimensions(51, 120, 127)
+    model = random_network(size, 127)
+    for name, array in model.integer.items():
+        array.fill(127 if name.startswith("w") else -32768)
+    render.check_fits(model)
+    assert cost.flash_bytes(size, 1) == 15 * (17 + 8 * 255) + 16 * (17 + 8 * 120) + 7 * (17 + 8 * 127) + 5

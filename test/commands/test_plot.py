@@ -1,0 +1,302 @@
+"""Pictures of a training and of tiles at work: what is drawn, the same every time, and what is refused."""
+
+import json
+import math
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.cli import main
+from tilenca.commands.plot import read_history
+from tilenca.model.file import load_model
+from tilenca.shapes.batch import load_drawings
+from tilenca.shapes.glyphs import GLYPHS, screen_colour
+from tilenca.simulator.trace import NOTHING, Film, record
+from tilenca.views import film as pictures
+from tilenca.views import plots
+
+ROWS = [(50 * n, 1 / n, 1 - 1 / n) for n in range(1, 101)]
+
+
+def plot(*arguments: object) -> int:
+    try:
+        return main(["plot", *map(str, arguments)])
+    except SystemExit as ended:
+        return int(ended.code or 0)
+
+
+def film_of(name: str, steps: int = 12, seed: int = 1) -> Film:
+    model = load_model(paths.DEFAULT_MODEL)
+    drawings = load_drawings([paths.DEFAULT_SHAPES], labels=model.labels)
+    number = [shape.name for shape in drawings.shapes].index(name)
+    return record(model, drawings, number, steps, "clock", seed)
+
+
+@pytest.fixture
+def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+    """The figures that would have been saved."""
+    drawn: list[Figure] = []
+    monkeypatch.setattr(plots, "save", lambda figure, path: drawn.append(figure))
+    return drawn
+
+
+def test_a_film_begins_dark_and_ends_as_the_shape() -> None:
+    film = film_of("4")
+    assert film.shown.shape == (13, 10)
+    assert (film.shown[0] == NOTHING).all()
+    assert (film.shown[-1] == 4).all()
+    assert film.agreed_at is not None
+    assert not film.right[film.agreed_at - 1]
+    assert film.right[film.agreed_at :].all()
+
+
+def test_a_film_that_does_not_end_right_has_not_agreed() -> None:
+    shape = film_of("1", steps=1).shape
+    film = Film(shape, ("0", "1"), np.array([[1] * 5, [1, 1, 0, 1, 1]]), "")
+    assert film.agreed_at is None
+    assert list(film.right) == [True, False]
+
+
+def test_the_same_seed_gives_the_same_film_and_another_seed_another() -> None:
+    np.testing.assert_array_equal(film_of("8").shown, film_of("8").shown)
+    assert (film_of("8").shown != film_of("8", seed=2).shown).any()
+
+
+@pytest.mark.parametrize("steps", [1, 19, 23, 24, 60, 500])
+def test_a_strip_shows_the_first_and_the_last_step_and_no_more_than_fit(steps: int) -> None:
+    shown = list(pictures.panels_of(steps))
+    assert shown[0] == 0
+    assert shown[-1] == steps
+    assert len(shown) <= pictures.MAX_PANELS
+    assert shown == sorted(set(shown))
+    if steps < pictures.MAX_PANELS:
+        assert len(shown) == steps + 1
+
+
+def test_a_tile_has_the_colour_and_the_segments_of_what_it_shows() -> None:
+    film = film_of("1", steps=1)
+    shown = np.array([[NOTHING, 2, 8, 4, 7]])
+    axes = Figure().add_axes((0, 0, 1, 1))
+    pictures.draw_tiles(axes, Film(film.shape, film.labels, shown, ""), 0)
+    fills = [patch.get_facecolor()[:3] for patch in axes.patches]
+    assert fills[1:] == [pytest.approx(screen_colour(number)) for number in (2, 8, 4, 7)]
+    assert len(set(fills)) == 5
+    segments = sum(len(collection.get_paths()) for collection in axes.collections)
+    assert segments == sum(GLYPHS[label].bit_count() for label in "2847")
+
+
+def test_segments_of_a_digit_do_not_overlap_and_stay_in_their_tile() -> None:
+    from matplotlib.path import Path as Outline
+
+    outlines = [Outline(pictures.segment(name)) for name in "abcdefg"]
+    for number, outline in enumerate(outlines):
+        corners = np.asarray(outline.vertices, np.float64)
+        assert corners.min() > 0.1
+        assert corners.max() < 0.9
+        assert not any(outline.intersects_path(other) for other in outlines[:number])
+
+
+def test_thirty_classes_have_thirty_colours_on_a_screen() -> None:
+    colours = [screen_colour(number) for number in range(30)]
+    assert len(set(colours)) == 30
+    assert all(0 <= part <= 1 for colour in colours for part in colour)
+
+
+def test_a_strip_is_a_png_of_some_width(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "film.png"
+    assert plot("--shape", 4, "--film", path, "--steps", 9, "--json") == 0
+    report = json.loads(capsys.readouterr().out)
+    film = film_of("4", steps=9)
+    assert report == {
+        "file": str(path),
+        "model": f"{load_model(paths.DEFAULT_MODEL).model_id:04X}",
+        "shape": "4",
+        "schedule": "clock",
+        "seed": 1,
+        "steps": 9,
+        "pictures": 10,
+        "agreed_at": film.agreed_at,
+    }
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+        assert image.width == plots.WIDTH_IN * plots.DPI
+        image.load()
+
+
+def test_a_gif_has_one_frame_per_step_and_shows_the_runs_colours(tmp_path: Path) -> None:
+    path = tmp_path / "film.gif"
+    assert plot("--shape", 4, "--film", path, "--steps", 12, "--schedule", "clock") == 0
+    wanted = np.array(screen_colour(4)) * 255
+    with Image.open(path) as image:
+        assert (image.format, getattr(image, "n_frames", 0)) == ("GIF", 13)
+        shares = []
+        for frame in range(13):
+            image.seek(frame)
+            pixels = np.asarray(image.convert("RGB")).astype(float)
+            shares.append(float((np.abs(pixels - wanted).max(axis=2) < 12).mean()))
+        assert image.info["duration"] == pictures.LAST_FRAME_MS
+    assert shares[0] == 0
+    assert shares[-1] == max(shares) > 0.15
+
+
+def test_films_of_the_same_seed_are_the_same_bytes(tmp_path: Path) -> None:
+    for suffix in (".png", ".svg", ".gif"):
+        first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
+        for path in (first, second):
+            assert (
+                plot("--shape", "1", "--film", path, "--steps", 3, "--schedule", "random", "--seed", 5) == 0
+            )
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_second_drawing_can_be_filmed(tmp_path: Path) -> None:
+    shapes = paths.SHAPES / "digits-3x3.toml"
+    assert plot("--shapes", shapes, "--shape", "7@2", "--film", tmp_path / "f.svg", "--steps", 2) == 0
+    assert ET.parse(tmp_path / "f.svg").getroot().tag.endswith("svg")
+
+
+def test_the_history_of_the_shipped_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for kind in ("png", "svg"):
+        assert plot("--out", tmp_path / "deep" / "er", "--format", kind) == 0
+        assert capsys.readouterr().out == f"{tmp_path}/deep/er/history.{kind}\n"
+    with Image.open(tmp_path / "deep" / "er" / "history.png") as image:
+        assert image.width == plots.WIDTH_IN * plots.DPI
+    assert ET.parse(tmp_path / "deep" / "er" / "history.svg").getroot().tag.endswith("svg")
+
+
+def test_a_history_is_drawn_beside_its_model(tmp_path: Path) -> None:
+    shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model")
+    assert plot("--model", tmp_path / "model") == 0
+    assert (tmp_path / "model" / "history.png").exists()
+
+
+def test_all_validation_columns_are_drawn_where_they_were_measured(figures: list[Figure]) -> None:
+    columns = (*plots.HISTORY, "@60", "seconds", "@1000")
+    rows = [(*row, 0.5 if n % 20 == 0 else None, 3.0, 0.25) for n, row in enumerate(ROWS)]
+    plots.plot_history(rows, Path("unused.png"), columns)
+    upper, lower = figures[0].axes
+    assert upper.get_yscale() == "log"
+    legend = lower.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "training samples",
+        "measured after 60 steps",
+        "measured after 1000 steps",
+    ]
+    lines = {line.get_label(): line for line in lower.get_lines()}
+    measured = lines["measured after 60 steps"]
+    assert list(np.asarray(measured.get_xdata())) == [50, 1050, 2050, 3050, 4050]
+    assert set(np.asarray(measured.get_ydata())) == {0.5}
+
+
+def test_the_mean_line_begins_and_ends_near_its_points(figures: list[Figure]) -> None:
+    plots.plot_history([(n, 100.0 - n, n / 100) for n in range(1, 100)], Path("unused.png"))
+    raw, mean = figures[0].axes[0].get_lines()
+    assert list(np.asarray(raw.get_ydata())) == [100.0 - n for n in range(1, 100)]
+    np.testing.assert_allclose(np.asarray(mean.get_ydata()), np.asarray(raw.get_ydata()), atol=2)
+
+
+@pytest.mark.parametrize("rows", [ROWS[:1], [(1, 0.0, 0.0), (2, 0.0, 1.0)], [(1, math.nan, 0.5)]])
+def test_short_histories_and_losses_of_nothing(rows: list[tuple[float, ...]], tmp_path: Path) -> None:
+    plots.plot_history(rows, tmp_path / "h.png")
+    with Image.open(tmp_path / "h.png") as image:
+        image.load()
+
+
+def test_histories_that_cannot_be_drawn(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no rows"):
+        plots.plot_history([], tmp_path / "h.png")
+    with pytest.raises(UsageError, match="no column 'loss'"):
+        plots.plot_history([(1, 2)], tmp_path / "h.png", ("iteration", "agreement"))
+    with pytest.raises(UsageError, match=r"written as \.png or \.svg"):
+        plots.plot_history(ROWS, tmp_path / "h.bmp")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ("iteration,loss,agreement\n50,1,0\n100,x,0\n", ":3: "),
+        ("iteration,loss,agreement\n50,1\n", ":2: 2 fields for 3 columns"),
+        ("\xff", "not a training history"),
+    ],
+)
+def test_a_damaged_history_names_its_line(text: str, where: str, tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(UsageError, match=where):
+        read_history(path)
+
+
+def test_empty_fields_of_a_history_are_not_measured(tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    path.write_text("iteration,loss,agreement,@60\n50,1,0,\n100,0.5,1,0.25\n", encoding="utf-8")
+    columns, rows = read_history(path)
+    assert columns[3] == "@60"
+    assert rows == [[50, 1, 0, None], [100, 0.5, 1, 0.25]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--shape", "4"], "--shape is of a film; add --film"),
+        (["--steps", "5"], "--steps is of a film"),
+        (["--film", "f.png"], "of which shape? add --shape NAME"),
+        (["--film", "f.jpg", "--shape", "4"], "f.jpg: a film is written as .png, .svg, .gif"),
+        (["--film", "f.gif", "--shape", "4", "--out", "d"], "--out is for the picture of the training"),
+        (["--film", "f.png", "--shape", "A"], "no shape 'A'; it has: 0 1"),
+        (["--film", "f.png", "--shape", "A", "--shapes", paths.SHAPES / "hex.toml"], "does not know 'A'"),
+        (["--film", "no/such/f.png", "--shape", "4"], "f.png: No such file or directory"),
+        (["--film", "no/such/f.gif", "--shape", "4"], "f.gif: No such file or directory"),
+        (["--film", "f.png", "--shape", "4", "--steps", "0"], "'0' is not a whole number from 1 to 500"),
+        (["--model", "nowhere"], "model.json: No such file"),
+        (["--out", "/proc/none"], "/proc/none: "),
+        (["--format", "pdf"], "invalid choice: 'pdf'"),
+    ],
+)
+def test_what_cannot_be_drawn_is_one_line(
+    arguments: list[object],
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert plot(*arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert words in said.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_without_history_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model")
+    (tmp_path / "model" / "history.csv").unlink()
+    assert plot("--model", tmp_path / "model") == 2
+    assert "history.csv: No such file or directory; give --model" in capsys.readouterr().err
+
+
+def test_without_matplotlib_the_remedy_is_named(tmp_path: Path) -> None:
+    program = "import sys; sys.modules['matplotlib'] = None; from tilenca.cli import main; sys.exit(main())"
+    for arguments in (["--out", tmp_path], ["--shape", "4", "--film", tmp_path / "f.gif"]):
+        done = subprocess.run(
+            [sys.executable, "-c", program, "plot", *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == 2
+        assert (
+            done.stderr == "tilenca: plots need matplotlib, which is not installed; run: make setup-train\n"
+        )

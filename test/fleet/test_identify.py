@@ -1,0 +1,91 @@
+"""Asking and telling many tiles at once: each gives an answer, or a reason why there is none."""
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from support.scripted_port import HELLO, Device
+from tilenca.fleet.command import ATTEMPTS, Reply, command_all
+from tilenca.fleet.identify import SILENT, STALE_S, ask_all
+from tilenca.fleet.lock import port_lock
+from tilenca.fleet.reader import PortReader
+from tilenca.protocol.board_test import BOARD_TEST
+from tilenca.protocol.commands import ask_command, set_command
+from tilenca.protocol.sentences import (
+    AckSentence,
+    NakSentence,
+    TileSentence,
+    format_sentence,
+    framed,
+)
+
+STATE = format_sentence(TileSentence(7, 100, 1, "4", "----", bytes([128] * 21)))
+ORDER = set_command("period", 20)
+
+
+@pytest.fixture
+def stack() -> Iterator[ExitStack]:
+    with ExitStack() as stack:
+        yield stack
+
+
+def test_each_port_has_its_answer_or_a_reason_in_the_order_asked(stack: ExitStack) -> None:
+    greets = stack.enter_context(Device(format_sentence(HELLO)))
+    older = stack.enter_context(Device(framed("HELLO,1,7,BEEF,21,10,250,0,04")))
+    silent, taken = stack.enter_context(Device()), stack.enter_context(Device())
+    stack.enter_context(port_lock(taken.port, "screen"))
+    names = [silent.port, "/dev/no-such-port", taken.port, older.port, greets.port]
+    reported: list[str] = []
+    answers = ask_all(names, "a test", lambda name, answer: reported.append(name), patience_s=2.0)
+    assert list(answers) == names
+    assert answers[greets.port].firmware_id == 0xABCDEF01
+    assert [answers[name].problem for name in names[:2]] == [SILENT, "no such port"]
+    assert answers[taken.port].problem.startswith("busy: screen (pid ")
+    assert answers[older.port].problem == "speaks protocol 1"
+    assert sorted(reported) == sorted(names)
+    assert not silent.heard, "a bootloader may be listening: it is not spoken to"
+
+
+def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack) -> None:
+    asked = stack.enter_context(Device(STATE, lambda line, count: format_sentence(HELLO)))
+    began_s = time.monotonic()
+    answers = ask_all([asked.port], "a test")
+    assert answers[asked.port].hello == HELLO
+    assert asked.heard[0] == ask_command()
+    assert time.monotonic() - began_s >= STALE_S, "what was said before a reset proves nothing"
+
+
+def test_a_board_under_test_is_told_from_one_that_is_silent(stack: ExitStack) -> None:
+    tested = stack.enter_context(Device(b"display: only segment a PH4\r\n"))
+    assert ask_all([tested.port], "a test")[tested.port].problem == BOARD_TEST
+    assert not tested.heard, "letters are commands to it"
+
+
+def ack(line: bytes, count: int) -> bytes:
+    return STATE + format_sentence(AckSentence(7, "SET", ("period", "20")))
+
+
+def refuse(line: bytes, count: int) -> bytes:
+    return format_sentence(NakSentence(7, "EEPROM", "SET"))
+
+
+def damaged_at_first(line: bytes, count: int) -> bytes:
+    return format_sentence(NakSentence(7, "CHECKSUM")) if count == 1 else ack(line, count)
+
+
+def test_a_command_is_acknowledged_refused_or_said_again(stack: ExitStack) -> None:
+    devices = [stack.enter_context(Device(answer=answer)) for answer in (ack, refuse, damaged_at_first)]
+    deaf = stack.enter_context(Device())
+    orders = {device.port: ORDER for device in (*devices, deaf)}
+    with PortReader(list(orders), user="a test") as reader:
+        while len(reader.open) < len(orders):
+            reader.poll(0.1)
+        replies = command_all(reader, orders, "SET")
+    assert list(replies) == list(orders)
+    assert replies[devices[0].port] == replies[devices[2].port] == Reply(("period", "20"))
+    assert replies[devices[1].port].problem == "refused: SET: the EEPROM did not keep it"
+    assert replies[deaf.port].problem == f"no answer to {ATTEMPTS} commands"
+    assert [len(device.heard) for device in (*devices, deaf)] == [1, 1, 2, ATTEMPTS]
+    assert {line for device in devices for line in device.heard} == {ORDER}

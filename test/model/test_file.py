@@ -1,0 +1,105 @@
+"""Model directories: what is read, and that each kind of damage is one line."""
+
+import io
+import json
+import shutil
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.model.file import load_model
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    """A copy of the shipped model."""
+    return Path(shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model"))
+
+
+def refusal(model: Path) -> str:
+    with pytest.raises(UsageError) as caught:
+        load_model(model)
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def npy(array: Any) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
+def test_a_model_survives_saving_and_loading(model: Path, tmp_path: Path) -> None:
+    first = load_model(model)
+    first.save(tmp_path / "copy")
+    second = load_model(tmp_path / "copy")
+    assert (second.model_id, second.labels, second.made) == (first.model_id, first.labels, first.made)
+    assert all((second.floats[name] == first.floats[name]).all() for name in first.floats)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fact"),
+    [
+        ({"labels": [["x"]]}, "labels must be"),
+        ({"labels": [{}]}, "labels must be"),
+        ({"labels": ["1", "1"]}, "they must differ"),
+        ({"made": [1]}, "made, and made.recipe"),
+        ({"made": None}, "made, and made.recipe"),
+        ({"made": {"recipe": "default"}}, "made, and made.recipe"),
+        ({"channels": "21"}, "channels, hidden1, hidden2"),
+        ({"channels": 52}, "the most are 51"),
+        ({"model_id": "0000"}, "do not belong together"),
+        ({"format": 99}, "model format 99"),
+    ],
+)
+def test_a_wrong_description_is_refused(model: Path, changes: dict[str, Any], fact: str) -> None:
+    path = model / "model.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+    assert fact in refusal(model)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", "[" * 100_000, "\xff"])
+def test_what_is_no_description_is_refused(model: Path, text: str) -> None:
+    (model / "model.json").write_bytes(text.encode("latin-1"))
+    assert refusal(model).startswith(str(model / "model.json"))
+
+
+def archive(**members: bytes) -> bytes:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as writer:
+        for name, content in members.items():
+            writer.writestr(f"{name}.npy", content)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"PK\x03\x04 and no more",
+        npy(np.zeros(3)),
+        archive(),
+        archive(w1=b"no array"),
+        archive(w1=npy(np.zeros((40, 105), "U3")), int_w1=npy(np.zeros((40, 105), np.int8))),
+        archive(w1=npy(np.zeros(3)), int_w1=npy(np.zeros((40, 105), np.int8))),
+    ],
+)
+def test_damaged_weights_are_refused(model: Path, content: bytes) -> None:
+    (model / "weights.npz").write_bytes(content)
+    assert refusal(model).startswith(str(model / "weights.npz"))
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda data: data[: len(data) // 2], lambda data: data.replace(b"f4", b"f8")]
+)
+def test_cut_or_changed_weights_are_refused(model: Path, damage: Callable[[bytes], bytes]) -> None:
+    path = model / "weights.npz"
+    path.write_bytes(damage(path.read_bytes()))
+    assert refusal(model).startswith(str(path))

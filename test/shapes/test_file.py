@@ -1,0 +1,139 @@
+"""Shape files: what is read, and what each mistake says."""
+
+import contextlib
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.shapes.cells import connected
+from tilenca.shapes.file import load_task
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "shapes.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def shape(label: str, *rows: str) -> str:
+    return f'[[shape]]\nlabel = "{label}"\ngrid = """\n' + "\n".join(rows) + '\n"""\n'
+
+
+def refusal(path: Path, max_classes: int | None = None) -> str:
+    with pytest.raises(UsageError) as caught:
+        load_task(path, max_classes)
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def test_the_papers_ten_digits() -> None:
+    task = load_task(paths.DEFAULT_SHAPES, max_classes=20)
+    assert task.labels == tuple("0123456789")
+    assert [len(s.cells) for s in task.shapes] == [14, 5, 14, 14, 10, 14, 15, 9, 16, 15]
+    assert task.find("4").rows == ("#..#", "#..#", "####", "...#", "...#")
+    assert task.class_of(task.find("4")) == 4
+
+
+@pytest.mark.parametrize("path", sorted(paths.SHAPES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_shipped_file_is_valid(path: Path) -> None:
+    assert load_task(path).shapes
+
+
+def test_neighbours_are_north_east_south_west(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("0", ".#.", "###", ".#.")))
+    assert task.shapes[0].neighbours() == [
+        [-1, -1, 2, -1],
+        [-1, 2, -1, -1],
+        [0, 3, 4, 1],
+        [-1, -1, -1, 2],
+        [2, -1, -1, -1],
+    ]
+
+
+def test_blanks_are_no_tiles_and_empty_borders_are_cut(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("1", "....", " ## ", ".#..", "....")))
+    assert task.shapes[0].rows == ("##", "#.")
+
+
+def test_blank_rows_above_and_below_are_layout(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("1", "", "   ", "##", "#.", "", " ")))
+    assert task.shapes[0].rows == ("##", "#.")
+
+
+def test_variants_of_a_class_have_names_of_their_own(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("7", "##") + shape("7", "###")))
+    assert [s.name for s in task.shapes] == ["7", "7@2"]
+    assert task.labels == ("7",)
+    assert task.find("7@2").rows == ("###",)
+
+
+def test_an_unknown_shape_lists_the_known_ones(tmp_path: Path) -> None:
+    task = load_task(write(tmp_path, shape("1", "#") + shape("2", "##")))
+    with pytest.raises(UsageError, match="no shape 'x'; it has: 1 2"):
+        task.find("x")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "fact"),
+    [
+        (shape("1", "##", "#"), 5, "ragged rows"),
+        (shape("1", "##", "#x"), 5, "unknown character 'x'"),
+        (shape("1", "##") + shape("2", "#.#"), 9, "not connected"),
+        (shape("1", "#.", "  ", ".#"), 4, "not connected"),
+        (shape("1", "##", "", "##"), 5, "ragged rows"),
+        (shape("1", "..", ".."), 4, "no tile"),
+        (shape("1", "##") + "\n# note\n" + shape("2", "##"), 8, "drawn exactly like '1'"),
+        (shape("@", "##"), 1, "label '@'"),
+        (shape("4", "##").replace('"4"', "4"), 1, 'write "4", in quotes'),
+        (shape("10", "##"), 1, "label '10'"),
+        (shape("5", "##") + shape("S", "###"), 6, "look the same"),
+        ('[[shape]]\nlabel = "1"\n', 1, "has no grid"),
+        ('[[shape]]\ngrid = "#"\n', 1, "label missing"),
+        ('[[shape]]\nlabel = "1"\ngrid = "#"\ncolour = "red"\n', 1, "unknown key 'colour'"),
+    ],
+)
+def test_a_mistake_names_its_line(tmp_path: Path, text: str, line: int, fact: str) -> None:
+    path = write(tmp_path, text)
+    message = refusal(path)
+    assert message.startswith(f"{path}:{line}: "), message
+    assert fact in message
+
+
+def test_too_many_classes_for_the_state(tmp_path: Path) -> None:
+    path = write(tmp_path, shape("1", "#") + shape("2", "##") + shape("3", "###"))
+    assert "class 3" in refusal(path, max_classes=2)
+    assert len(load_task(path, max_classes=3).labels) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "fact"),
+    [
+        ("", "no shapes"),
+        ("shape = 3\n", "no shapes"),
+        ("title = 'x'\n" + shape("1", "#"), "unknown key 'title'"),
+        ("[[shape]\n", "not valid TOML"),
+    ],
+)
+def test_a_file_that_is_no_shape_file(tmp_path: Path, text: str, fact: str) -> None:
+    assert fact in refusal(write(tmp_path, text))
+
+
+def test_a_missing_or_binary_file(tmp_path: Path) -> None:
+    assert "No such file" in refusal(tmp_path / "none.toml")
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    assert "not UTF-8" in refusal(binary)
+
+
+@settings(max_examples=300)
+@given(st.text(alphabet="[]shape=\"label#. \n1grid'x", max_size=200))
+def test_arbitrary_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "shapes.toml"
+    path.write_text(text, encoding="utf-8")
+    with contextlib.suppress(UsageError):
+        assert all(connected(s.cells) for s in load_task(path).shapes)

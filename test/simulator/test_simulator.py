@@ -1,0 +1,334 @@
+"""The compiled simulator: to the bit what a slow one in plain Python does, whatever goes wrong."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from firmware.synthetic_models import random_network
+from support.reference_network import reference
+from support.reference_simulator import SlowRun
+from tilenca.model.file import Dimensions, Model
+from tilenca.shapes.batch import Drawings
+from tilenca.shapes.file import Shape
+from tilenca.simulator.engine import ExactEngine, FastEngine, States
+from tilenca.simulator.simulator import Conditions, Course, Fault, Simulator
+
+CLASSES = 3
+CHANNELS = 6
+
+
+def restless_model() -> Model:
+    """A network that never comes to rest: each state swings around zero, driven by what the neighbours do."""
+    random = random_network(Dimensions(CHANNELS, 4 * CHANNELS, 4 * CHANNELS), 40, seed=5)
+    integer = {name: array.copy() for name, array in random.integer.items()}
+    swing = np.arange(2 * CHANNELS)  # the units that hold the own message's parts above and below zero
+    own, sign = swing // 2, 1 - 2 * (swing % 2)
+    for name in ("w1", "w2"):
+        integer[name][swing] = 0
+    integer["w1"][2 * CHANNELS :, :CHANNELS] = 0  # all others listen to the neighbours
+    integer["w1"][swing, own] = 127 * sign
+    integer["w2"][swing, swing] = 64
+    integer["w3"][own, swing] = -120 * sign
+    for name in ("b1", "b2", "b3"):
+        integer[name] //= 20
+    return replace(random, labels=("0", "1", "2"), integer=integer)
+
+
+MODEL = restless_model()
+LETTERS = Drawings(
+    (
+        Shape("0", ("###", "#.#", "###"), "0"),
+        Shape("1", ("#", "#", "#"), "1"),
+        Shape("2", ("##.", ".##"), "2"),
+    ),
+    (0, 0, 0), ("0", "1", "2"), ({"file": "letters.toml", "sha256": ""},),
+)  # fmt: skip
+
+
+class PlainEngine(ExactEngine):
+    """The arithmetic in numpy, so that `Simulator` goes round by round."""
+
+    def update(self, states: States, seen: States) -> States:
+        return reference(self.model, states, seen).astype(np.int16)
+
+
+def block(rows: int, cols: int) -> Drawings:
+    """One drawing full of tiles."""
+    shape = Shape("0", ("#" * cols,) * rows, "0")
+    return Drawings((shape,), (0,), ("0", "1", "2"), ({"file": "block.toml", "sha256": ""},))
+
+
+def simulator(
+    conditions: Conditions,
+    fault: Fault | None = None,
+    runs: int = 2,
+    drawings: Drawings = LETTERS,
+    engine: Any = FastEngine,
+    seed: int = 11,
+    threads: int | None = 1,
+) -> Simulator:
+    chosen = np.tile(np.arange(len(drawings)), runs)
+    random = np.random.default_rng(seed)
+    return Simulator(engine(MODEL), drawings, chosen, conditions, random, fault=fault, threads=threads)
+
+
+def check_against_the_slow_one(life: Simulator, steps: int) -> None:
+    engine = PlainEngine(MODEL)
+
+    def update(state: NDArray[Any], inputs: NDArray[Any]) -> NDArray[Any]:
+        return reference(MODEL, state, inputs).astype(np.int16)
+
+    start = engine.seed(life.cells)
+    slow = [
+        SlowRun(life.setup, run, start, start[0], update, engine.message, CLASSES)
+        for run in range(len(life.batch.starts))
+    ]
+    course = life.run(steps, record=True)
+    assert course.shown is not None
+    for step in range(steps):
+        right = [run.step() for run in slow]
+        assert course.shown[step].tolist() == [shown for run in slow for shown in run.shown], f"step {step}"
+        np.testing.assert_allclose(course.right[step], right, rtol=1e-6)
+    assert np.array_equal(life.states, np.concatenate([run.states for run in slow]))
+
+
+CONDITIONS = [
+    Conditions("random"),
+    Conditions("random", loss=0.3, dead=0.1),
+    Conditions("random", loss=0.9),
+    Conditions("random", loss=0.2, lost="zero"),
+    Conditions("clock"),
+    Conditions("clock", loss=0.3, dead=0.1),
+    Conditions("clock", loss=0.9, boot=0.0),
+    Conditions("clock", loss=0.2, lost="zero", drift=0.08),
+    Conditions("clock", loss=1.0, latency=(0.05, 0.98), boot=3.7),
+]
+
+
+@pytest.mark.parametrize("conditions", CONDITIONS, ids=str)
+def test_every_state_and_display_is_that_of_the_slow_simulator(conditions: Conditions) -> None:
+    check_against_the_slow_one(simulator(conditions), 30)
+
+
+TILES = np.array([3, 1, -1, 0, 2, 3])
+FAULTS = [
+    Fault("dead", TILES),
+    Fault("dead", TILES, begin=9),
+    Fault("stuck", TILES),
+    Fault("stuck", TILES, begin=9),
+    Fault("away", TILES, begin=5, end=7),
+    Fault("away", TILES, begin=5, end=14),
+    Fault("away", TILES, begin=0, end=6),
+]
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: f"{fault.kind}-{fault.begin}-{fault.end}")
+@pytest.mark.parametrize(
+    "conditions",
+    [
+        Conditions(schedule, loss=0.3, lost=lost)
+        for schedule in ("random", "clock")
+        for lost in ("held", "zero")
+    ]
+    + [Conditions("clock", dead=0.2), Conditions("random", dead=0.2)],
+    ids=str,
+)
+def test_with_a_fault_too_it_is_the_slow_simulator(fault: Fault, conditions: Conditions) -> None:
+    if conditions.dead and fault.kind == "dead":
+        conditions = replace(conditions, dead=0.0)  # or nobody would be left to ask in a run of three tiles
+    check_against_the_slow_one(simulator(conditions, fault, seed=12), 24)
+
+
+@pytest.mark.parametrize("schedule", ["random", "clock"])
+def test_a_run_of_more_tiles_than_a_number_has_bits_is_the_slow_simulator_too(schedule: Any) -> None:
+    check_against_the_slow_one(simulator(Conditions(schedule, loss=0.1), runs=1, drawings=block(9, 15)), 4)
+
+
+def same(one: Simulator, other: Simulator, steps: int) -> bool:
+    """Whether two simulators live the same life."""
+    courses = [life.run(steps, record=True) for life in (one, other)]
+    return (
+        np.array_equal(one.states, other.states)
+        and np.array_equal(courses[0].right, courses[1].right)
+        and np.array_equal(courses[0].shown, courses[1].shown)  # type: ignore[arg-type]
+        and one.updates == other.updates
+    )
+
+
+@pytest.mark.parametrize("schedule", ["random", "clock"])
+def test_the_result_does_not_depend_on_the_number_of_threads(schedule: Any) -> None:
+    conditions = Conditions(schedule, loss=0.1)
+    fault = Fault("away", np.zeros(3 * 700, np.int64), begin=2, end=4)
+    lives = [simulator(conditions, fault, runs=700, threads=threads) for threads in (1, 2, 5)]
+    assert lives[0].cells > 8192, "several groups, or there is nothing to share"
+    assert same(lives[0], lives[1], 12)
+    assert np.array_equal(lives[2].run(12).right, simulator(conditions, fault, runs=700).run(12).right)
+
+
+def test_any_engine_follows_the_same_schedule_round_by_round() -> None:
+    for conditions in CONDITIONS:
+        for fault in (None, FAULTS[1], FAULTS[3], FAULTS[5]):
+            if conditions.dead == 0 or fault is None:
+                fast, plain = (
+                    simulator(conditions, fault, engine=engine) for engine in (FastEngine, PlainEngine)
+                )
+                assert same(fast, plain, 25), (conditions, fault)
+
+
+def test_the_same_seed_gives_the_same_life_and_another_one_another() -> None:
+    conditions = Conditions("clock", loss=0.1)
+    assert same(simulator(conditions), simulator(conditions), 20)
+    assert not same(simulator(conditions), simulator(conditions, seed=12), 20)
+
+
+def test_a_life_goes_on_where_it_stopped() -> None:
+    fault = Fault("away", TILES, begin=8, end=13)
+    for schedule in ("random", "clock"):
+        conditions = Conditions(schedule, loss=0.2)
+        whole, parts = simulator(conditions, fault), simulator(conditions, fault)
+        right = np.concatenate([parts.run(steps).right for steps in (1, 7, 0, 12)])
+        assert np.array_equal(whole.run(20).right, right)
+        assert np.array_equal(whole.states, parts.states)
+
+
+def test_ten_thousand_tiles_live_in_one_array() -> None:
+    conditions = Conditions("clock", loss=0.05)
+    lives = [
+        simulator(conditions, runs=1, drawings=block(100, 100), engine=engine)
+        for engine in (FastEngine, PlainEngine)
+    ]
+    assert lives[0].cells == 10_000
+    assert same(lives[0], lives[1], 5)
+    # Drift apart, every tile updates once a step; those switched on first are ten steps ahead.
+    assert 10_000 * 5 < lives[0].updates < 10_000 * 15
+
+
+def test_updates_are_counted() -> None:
+    life = simulator(Conditions("clock", boot=0.0, drift=0.0))
+    life.run(10)
+    assert life.updates == life.cells * 10
+    stuck = simulator(Conditions("clock", boot=0.0, drift=0.0), Fault("stuck", TILES, begin=4))
+    stuck.run(10)
+    assert stuck.updates == life.updates - 5 * 6  # five runs have a stuck tile
+
+
+def test_states_to_start_from_are_copied_and_used() -> None:
+    engine = FastEngine(MODEL)
+    random = np.random.default_rng(1)
+    states = random.integers(-16256, 16257, (12, 6)).astype(np.int16)
+    before = states.copy()
+    chosen = np.array([0, 2])
+    lives = [
+        Simulator(engine, LETTERS, chosen, Conditions(), np.random.default_rng(2), given, threads=1)
+        for given in (states, states[::-1][::-1], engine.seed(12))
+    ]
+    for life in lives:
+        life.run(3)
+    assert np.array_equal(states, before)
+    assert np.array_equal(lives[0].states, lives[1].states)
+    assert not np.array_equal(lives[0].states, lives[2].states)
+
+
+def faulty_cells(life: Simulator) -> NDArray[np.int64]:
+    return life.setup.faulty[life.setup.faulty >= 0]
+
+
+def life_with(fault: Fault, conditions: Conditions) -> tuple[Simulator, Course]:
+    life = simulator(conditions, fault)
+    course = life.run(30, record=True)
+    assert course.shown is not None
+    return life, course
+
+
+@pytest.mark.parametrize("schedule", ["random", "clock"])
+def test_a_tile_that_dies_is_dark_from_then_on_and_not_asked(schedule: Any) -> None:
+    life, course = life_with(Fault("dead", TILES, begin=12), Conditions(schedule))
+    shown = course.shown[:, faulty_cells(life)]  # type: ignore[index]
+    assert (shown[11] >= 0).all()
+    assert (shown[12:] == -1).all()
+    others = np.ones(life.cells, np.bool_)
+    others[faulty_cells(life)] = False
+    good = (course.shown == life.batch.target) & others
+    expected = np.add.reduceat(good[-1], life.batch.starts) / np.add.reduceat(others, life.batch.starts)
+    assert course.right[-1] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("schedule", ["random", "clock"])
+def test_a_stuck_tile_keeps_its_state_and_display(schedule: Any) -> None:
+    life = simulator(Conditions(schedule), Fault("stuck", TILES, begin=7))
+    life.run(7)
+    states, shown = life.states.copy(), life.shown.copy()
+    life.run(20)
+    stuck = faulty_cells(life)
+    moved = (life.states != states).any(axis=1)
+    assert not moved[stuck].any()
+    assert np.array_equal(life.shown[stuck], shown[stuck])
+    assert moved.sum() > len(stuck)
+
+
+@pytest.mark.parametrize("schedule", ["random", "clock"])
+def test_a_tile_that_was_away_is_dark_and_comes_back_as_the_seed(schedule: Any) -> None:
+    life = simulator(Conditions(schedule), Fault("away", TILES, begin=6, end=18))
+    course = life.run(18, record=True)
+    away = faulty_cells(life)
+    assert (course.shown[6:, away] == -1).all()  # type: ignore[index]
+    assert (course.right[6:, TILES >= 0] < 1).all(), "a dark tile is not right"
+    later = life.run(12, record=True)
+    assert (later.shown[-1, away] >= 0).all()  # type: ignore[index]
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"loss": 1.5}, "shares"),
+        ({"dead": -0.1}, "shares"),
+        ({"schedule": "often"}, "no such schedule"),
+        ({"lost": "found"}, "no such schedule"),
+        ({"latency": (0.0, 0.5)}, "arrives before"),
+        ({"latency": (0.5, 0.4)}, "arrives before"),
+        ({"drift": 0.2}, "arrives before"),
+        ({"drift": -0.1}, "arrives before"),
+        ({"boot": -1.0}, "arrives before"),
+        ({"boot": float("nan")}, "arrives before"),
+    ],
+)
+def test_conditions_that_make_no_sense_are_refused(settings: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Conditions(**settings)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"kind": "tired"},
+        {"kind": "dead", "begin": -1},
+        {"kind": "dead", "end": 4},
+        {"kind": "away"},
+        {"kind": "away", "begin": 4, "end": 4},
+    ],
+)
+def test_faults_that_make_no_sense_are_refused(settings: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="fault"):
+        Fault(tiles=TILES, **settings)
+
+
+@pytest.mark.parametrize("tiles", [[0, 0], [0, 3, 0, 0, 0, 0], [0, -2, 0, 0, 0, 0], [8, 0, 0, 0, 0, 0]])
+def test_a_fault_of_tiles_that_are_not_there_is_refused(tiles: list[int]) -> None:
+    with pytest.raises(ValueError, match="6 runs need as many tiles"):
+        simulator(Conditions(), Fault("dead", np.array(tiles)))
+
+
+def test_a_run_with_nobody_to_ask_is_refused() -> None:
+    with pytest.raises(ValueError, match="nobody is left to ask"):
+        simulator(Conditions(), Fault("stuck", np.zeros(1, np.int64)), runs=1, drawings=block(1, 1))
+
+
+def test_states_of_another_shape_are_refused() -> None:
+    with pytest.raises(ValueError, match="states"):
+        Simulator(
+            FastEngine(MODEL), LETTERS, np.array([1]), Conditions(), np.random.default_rng(1),
+            np.zeros((3, 5), np.int16),
+        )  # fmt: skip

@@ -1,0 +1,161 @@
+"""Fixtures of the emulator's tests: AVR programs compiled on the spot, and what they run on."""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from support.conversation import Talk
+from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.emulator import Array
+from tilenca.protocol.settings import settings_block
+
+ROOT = Path(__file__).resolve().parents[2]
+
+Compile = Callable[..., Path]
+
+
+def run_tool(*command: str | Path) -> str:
+    """What a program prints; fails the test with its errors if it does not succeed."""
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, f"{command[0]} failed:\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture
+def talk() -> Iterator[Talk]:
+    """A lone tile that has an id and a period, past its greeting."""
+    with Array(FIRMWARE_ELF) as array:
+        array[0].write_eeprom(0, settings_block(7, 100, 0))
+        talk = Talk(array)
+        talk.listen(0.7)
+        yield talk
+
+
+def hex_record(kind: int, address: int, data: bytes) -> str:
+    """A line of an Intel HEX file."""
+    body = bytes([len(data), address >> 8 & 0xFF, address & 0xFF, kind]) + data
+    return f":{(body + bytes([-sum(body) & 0xFF])).hex().upper()}\n"
+
+
+def compile_differential(library: Path, directory: Path) -> Path:
+    """The program that runs our core and libsimavr side by side."""
+    program, source = directory / "differential", ROOT / "test" / "emulator" / "differential.cpp"
+    search = ("-I", ROOT / "tools" / "emulator" / "src", "-I", ROOT / "firmware" / "include")
+    links = (library, f"-Wl,-rpath,{library.parent}", "-lsimavr", "-lelf")
+    run_tool("g++", "-std=c++17", "-O1", *search, source, "-o", program, *links)
+    return program
+
+
+@pytest.fixture
+def avr(tmp_path: Path) -> Compile:
+    """Compiles C for the ATmega2560 and returns the ELF file."""
+    if shutil.which("avr-gcc") is None:
+        pytest.skip("avr-gcc is not installed; run `make setup`")
+
+    def compile_program(source: str, *options: str, mcu: str = "atmega2560") -> Path:
+        text, elf = tmp_path / "program.c", tmp_path / "program.elf"
+        text.write_text(PRELUDE + source)
+        flags = (f"-mmcu={mcu}", "-DF_CPU=16000000UL", "-Os", "-std=gnu11", "-Wall", "-Werror")
+        run_tool("avr-gcc", *flags, *options, text, "-o", elf)
+        return elf
+
+    return compile_program
+
+
+ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
+MEGA = (
+    "-mmcu=atmega2560",
+    "-DF_CPU=16000000UL",
+    "-DARDUINO=10807",
+    "-DARDUINO_AVR_MEGA2560",
+    "-DARDUINO_ARCH_AVR",
+)
+FOR_SIZE = ("-Os", "-w", "-ffunction-sections", "-fdata-sections", "-DDECIMAL_DIG=__DECIMAL_DIG__")
+INCLUDES = ("-I", ARDUINO / "cores" / "arduino", "-I", ARDUINO / "variants" / "mega")
+LANGUAGES = {
+    ".c": ("-std=gnu11",),
+    ".cpp": ("-std=gnu++11", "-fno-exceptions", "-fpermissive", "-fno-threadsafe-statics"),
+    ".S": ("-x", "assembler-with-cpp"),
+}
+# A function defined at the outer level of a sketch; the Arduino IDE declares them all before the first.
+DEFINITION = re.compile(r"^((?:unsigned )?[a-z_]\w*[ *]+\w+\([^;{}()]*\))\s*\{", re.MULTILINE)
+
+
+def _compile_arduino(source: Path, target: Path, *options: str | Path) -> Path:
+    compiler = "avr-g++" if source.suffix == ".cpp" else "avr-gcc"
+    flags = (*MEGA, *FOR_SIZE, *LANGUAGES[source.suffix], *INCLUDES, *options)
+    run_tool(compiler, *flags, "-c", source, "-o", target)
+    return target
+
+
+@pytest.fixture(scope="session")
+def arduino_core(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Arduino's core for the Mega, compiled."""
+    if not ARDUINO.exists() or shutil.which("avr-gcc") is None:
+        pytest.skip("arduino-core-avr is not installed; run `make setup`")
+    directory = tmp_path_factory.mktemp("arduino")
+    core = ARDUINO / "cores" / "arduino"
+    sources = [source for source in sorted(core.iterdir()) if source.suffix in LANGUAGES]
+    with ThreadPoolExecutor(2) as pool:
+        objects = list(pool.map(lambda one: _compile_arduino(one, directory / f"{one.name}.o"), sources))
+    run_tool("avr-ar", "rcs", directory / "core.a", *objects)
+    return directory / "core.a"
+
+
+@pytest.fixture
+def arduino(arduino_core: Path, tmp_path: Path) -> Compile:
+    """Compiles a sketch, given as text or as an .ino file, with Arduino libraries; returns the ELF file."""
+
+    def compile_sketch(sketch: str | Path, *libraries: str) -> Path:
+        text = sketch.read_text() if isinstance(sketch, Path) else sketch
+        declarations = "".join(f"{definition};\n" for definition in DEFINITION.findall(text))
+        first = DEFINITION.search(text)
+        start = first.start() if first else 0
+        main = tmp_path / "sketch.cpp"
+        main.write_text("#include <Arduino.h>\n" + text[:start] + declarations + text[start:])
+        folders = [ARDUINO / "libraries" / library / "src" for library in libraries]
+        search = [word for folder in folders for word in ("-I", folder, "-I", folder / "utility")]
+        sources = [main]
+        for folder in folders:
+            sources += [one for one in sorted(folder.rglob("*")) if one.suffix in LANGUAGES]
+        objects = [_compile_arduino(one, tmp_path / f"{one.name}.o", *search) for one in sources]
+        elf = tmp_path / "sketch.elf"
+        run_tool(
+            "avr-gcc",
+            "-mmcu=atmega2560",
+            "-Os",
+            "-Wl,--gc-sections",
+            *objects,
+            arduino_core,
+            "-lm",
+            "-o",
+            elf,
+        )
+        return elf
+
+    return compile_sketch
+
+
+# What most programs need: `result` is where they leave what the test looks at, at a fixed place in SRAM.
+PRELUDE = """
+#include <avr/eeprom.h>
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/pgmspace.h>
+#include <avr/sleep.h>
+#include <avr/wdt.h>
+#include <stdint.h>
+#include <util/delay.h>
+#define result ((volatile uint8_t *)0x1000)
+#define result16 ((volatile uint16_t *)0x1000)
+"""
+
+
+def words(memory: bytes) -> list[int]:
+    """Little-endian 16-bit words."""
+    return [low | high << 8 for low, high in zip(memory[::2], memory[1::2], strict=True)]

@@ -1,0 +1,192 @@
+"""The life of one run of tiles in plain Python, event by event: what tools/simulator must agree with.
+
+Written from the description of the schedules, not from the code: times are fractions, messages are kept per
+pair of tiles, nothing is computed for many runs at once.
+"""
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.protocol.constants import SILENT_PERIODS
+from tilenca.simulator.rollout_library import TICKS, UNITS_PER_STEP, Setup, units
+
+NEVER = Fraction(-(10**9))
+
+Update = Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]]  # (C,) state and (5 C,) inputs to (C,) state
+Message = Callable[[NDArray[Any]], NDArray[Any]]
+
+
+def split_mix(seed: int) -> Iterator[int]:
+    """Steele, Lea & Flood, Fast splittable pseudorandom number generators (2014)."""
+    mask = (1 << 64) - 1
+    while True:
+        seed = (seed + 0x9E3779B97F4A7C15) & mask
+        z = ((seed ^ seed >> 30) * 0xBF58476D1CE4E5B9) & mask
+        z = ((z ^ z >> 27) * 0x94D049BB133111EB) & mask
+        yield z ^ z >> 31
+
+
+class SlowRun:
+    """One run.
+
+    Args:
+        setup: of all runs.
+        run: which one.
+        states: (N, C) states of all runs to start from.
+        seed_state: (C,) what a tile that is switched on starts from.
+        update: the network.
+        message: what a tile tells its neighbours of its state.
+        classes: how many there are.
+    """
+
+    def __init__(
+        self,
+        setup: Setup,
+        run: int,
+        states: NDArray[Any],
+        seed_state: NDArray[Any],
+        update: Update,
+        message: Message,
+        classes: int,
+    ) -> None:
+        begin, end = setup.starts[run], setup.starts[run + 1]
+        self.setup, self.seed_state, self.update, self.message, self.classes = (
+            setup, seed_state, update, message, classes
+        )  # fmt: skip
+        self.tiles = range(end - begin)
+        self.neighbours = [
+            [int(other - begin) if other < len(setup.alive) else None for other in row]
+            for row in setup.neighbours[begin:end]
+        ]
+        self.states = [state.copy() for state in states[begin:end]]
+        self.on = [bool(alive) for alive in setup.alive[begin:end]]
+        self.stuck = [False for _ in self.tiles]
+        self.shown = [-1 for _ in self.tiles]
+        self.heard: dict[tuple[int, int], NDArray[Any]] = {}  # by (sender, receiver)
+        self.heard_at: dict[tuple[int, int], Fraction] = {}
+        self.numbers = split_mix(int(setup.seeds[run]))
+        self.now = Fraction(0)
+        self.faulty = int(setup.faulty[run] - begin) if setup.faulty[run] >= 0 else None
+        self.target = int(setup.target[begin])
+        out = None if setup.fault == "away" else self.faulty  # who was away must be right when back
+        self.counted = [tile for tile in self.tiles if self.on[tile] and tile != out]
+        if self.faulty is not None and setup.begin == 0:
+            if setup.fault == "stuck":
+                self.stuck[self.faulty] = True
+            else:
+                self.on[self.faulty] = False
+        self.was_alive = [bool(alive) for alive in setup.alive[begin:end]]
+        self.own = [message(state) for state in self.states]
+        if setup.clocks:
+            first, period, latency, start = setup.clocks
+            self.update_at = [Fraction(int(t), UNITS_PER_STEP) for t in units(first[begin:end])]
+            self.period = [Fraction(int(t), UNITS_PER_STEP) for t in units(period[begin:end])]
+            self.latency = [Fraction(int(t), UNITS_PER_STEP) for t in units(latency[begin:end])]
+            self.arrive_at: list[Fraction | None] = [None for _ in self.tiles]
+            self.now = Fraction(int(start))
+        else:
+            self.sending = list(self.tiles)
+
+    def step(self) -> float:
+        """Lives one step on; the share of tiles that are right then."""
+        if self.setup.clocks:
+            until = max(self.now, Fraction(0)) + 1
+            while self.now < until:
+                if self.now >= 0 and self.now.denominator == 1:
+                    self._change(int(self.now))
+                self.now += Fraction(1, TICKS)
+                self._tick()
+        else:
+            self._change(int(self.now))
+            for _ in range(2):
+                self.now += Fraction(1, 2)
+                self._half_step()
+        return sum(self.shown[tile] == self.target for tile in self.counted) / len(self.counted)
+
+    def _change(self, step: int) -> None:
+        tile, setup = self.faulty, self.setup
+        if tile is None or not self.was_alive[tile]:
+            return
+        if setup.fault == "away" and step == setup.end:
+            self.on[tile] = True
+            self.states[tile] = self.seed_state.copy()
+            self.own[tile] = self.message(self.states[tile])
+            for other in self.neighbours[tile]:
+                self.heard.pop((other, tile), None)  # type: ignore[arg-type]
+            if setup.clocks:
+                self.update_at[tile] = self.now + self.period[tile]
+                self.arrive_at[tile] = None
+        elif step == setup.begin and step > 0:
+            if setup.fault == "stuck":
+                self.stuck[tile] = True
+            else:
+                self.on[tile] = False
+                self.shown[tile] = -1
+
+    def _tick(self) -> None:
+        for tile in self.tiles:
+            arrival = self.arrive_at[tile]
+            if self.on[tile] and arrival is not None and arrival <= self.now:
+                self.arrive_at[tile] = None
+                self._send(tile)
+        due = [tile for tile in self.tiles if self.on[tile] and self.update_at[tile] <= self.now]
+        for tile in due:
+            self._update(tile)
+            self.arrive_at[tile] = self.update_at[tile] + self.latency[tile]
+            self.update_at[tile] += self.period[tile]
+
+    def _half_step(self) -> None:
+        for tile in self.tiles:
+            # A tile that skips its turn still is what its last message said: who heard that has heard it now.
+            if self.on[tile] and tile not in self.sending:
+                for other in self.neighbours[tile]:
+                    if other is not None and self.heard_at.get((tile, other)) == self.now - Fraction(1, 2):
+                        self.heard_at[tile, other] = self.now
+        for tile in self.sending:
+            if self.on[tile]:
+                self._send(tile)
+        firing = []
+        for tile in self.tiles:
+            if tile % 64 == 0:
+                bits = next(self.numbers)
+            if bits >> tile % 64 & 1 and self.on[tile]:
+                firing.append(tile)
+                self._update(tile)
+        self.sending = firing
+
+    def _lost(self, lost: str) -> list[bool]:
+        if self.setup.loss == 0 or (lost == "zero") != self.setup.zeros:
+            return [False] * 4
+        draws = [next(self.numbers), next(self.numbers)]
+        return [
+            (draws[side // 2] >> 32 * (side % 2)) % 2**32 < round(self.setup.loss * 2**32)
+            for side in range(4)
+        ]
+
+    def _send(self, tile: int) -> None:
+        for other, lost in zip(self.neighbours[tile], self._lost("held"), strict=True):
+            if other is not None and not lost:
+                self.heard[tile, other] = self.own[tile]
+                self.heard_at[tile, other] = self.now
+
+    def _update(self, tile: int) -> None:
+        if self.stuck[tile]:
+            return
+        nothing = np.zeros_like(self.own[tile])
+        seen = [self.own[tile]]
+        for other, lost in zip(self.neighbours[tile], self._lost("zero"), strict=True):
+            if other is None or lost or self._silent(other, tile):
+                seen.append(nothing)
+            else:
+                seen.append(self.heard.get((other, tile), nothing))
+        self.states[tile] = self.update(self.states[tile], np.concatenate(seen))
+        self.own[tile] = self.message(self.states[tile])
+        self.shown[tile] = int(np.argmax(self.states[tile][-self.classes :]))
+
+    def _silent(self, sender: int, receiver: int) -> bool:
+        tracked = self.setup.fault != "none" or (self.setup.loss > 0 and not self.setup.zeros)
+        return tracked and self.now - self.heard_at.get((sender, receiver), NEVER) > SILENT_PERIODS

@@ -1,0 +1,100 @@
+"""Prints what the firmware costs, how fast it is emulated and simulated: bench.overview FIRMWARE.elf."""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from firmware import budgets
+from tilenca.base import paths
+from tilenca.emulator.experiment import Conditions as Powering
+from tilenca.emulator.experiment import Emulation, firmware_settings
+from tilenca.model.file import load_model
+from tilenca.shapes.batch import load_drawings
+from tilenca.shapes.file import load_task
+from tilenca.simulator import core_library
+from tilenca.simulator.engine import FastEngine
+from tilenca.simulator.simulator import Conditions, Simulator
+
+SHAPE = "8"  # of the paper's digits the one with the most tiles
+SEED = 0
+RUNS, STEPS, TURNS = 20, 60, 5  # of the simulator
+
+
+def emulation(elf: Path, seconds: float) -> list[str]:
+    """Emulates a whole drawing on one core; one line per figure.
+
+    Cycle counts are exact and the same on every machine, since the seed decides all there is to decide.
+
+    Raises:
+        TilencaError: the image cannot be emulated.
+    """
+    task = load_task(paths.DEFAULT_SHAPES)
+    running = Emulation(
+        task, task.find(SHAPE), elf, Powering(seconds=seconds, seed=SEED), firmware_settings(elf)
+    )
+    with running.array:
+        started_s = time.perf_counter()
+        running.run(lambda *_: None)
+        wall_s = time.perf_counter() - started_s
+        tiles = running.report(wall_s)["tiles"]
+        cycles = [tile.cycles for tile in running.array]
+    awake = sum(total - asleep for total, asleep in cycles)
+    updates = sum(tile["updates"] for tile in tiles)
+    frames = {name: sum(tile["frames"][name] for tile in tiles) for name in tiles[0]["frames"]}
+    ratio = seconds / wall_s
+    return [
+        f"{'cycles awake/update':<22} {awake / updates:>8,.0f}, all told: network, links, display, telemetry",
+        f"{'share of time awake':<22} {awake / sum(total for total, _ in cycles):>8.1%}",
+        f"{'frames':<22} " + ", ".join(f"{count:,} {name}" for name, count in frames.items()),
+        f"{'emulation, one core':<22} {len(tiles)} tiles at {ratio:.1f} times real time, "
+        f"{len(tiles) * ratio / 20:.1f} times for twenty",
+    ]
+
+
+def simulator() -> list[str]:
+    """Simulates all shipped digits on one core, in turn with the chip's own code on one cell after the other.
+
+    Processor time, so that whoever else is busy here counts little.
+    """
+    model = load_model(paths.DEFAULT_MODEL)
+    drawings = load_drawings(sorted(paths.SHAPES.glob("digits*.toml")), labels=model.labels)
+    chosen = np.repeat(np.arange(len(drawings)), RUNS)
+    whole, alone = [], []
+    for turn in range(TURNS):
+        random = np.random.default_rng(turn)
+        life = Simulator(
+            FastEngine(model), drawings, chosen, Conditions("clock", loss=0.1), random, threads=1
+        )
+        started_s = time.process_time()
+        life.run(STEPS)
+        whole.append(life.updates / (time.process_time() - started_s))
+        inputs = np.tile(FastEngine(model).message(life.states), 5)
+        started_s = time.process_time()
+        core_library.update_cells(model, life.states, inputs, lanes=1)
+        alone.append(life.cells / (time.process_time() - started_s))
+    speed, ratio = np.median(whole), np.median(np.divide(whole, alone))
+    return [
+        f"{'simulation, one core':<22} {speed / 1e6:.1f} million cell updates/s with clocks, links and loss, "
+        f"{ratio:.1f} times the chip's code alone"
+    ]
+
+
+def main() -> int:
+    """Prints the sizes, then the speed; returns the exit status of the budgets."""
+    parser = argparse.ArgumentParser(
+        description="Prints what the firmware costs and how fast it is emulated and simulated."
+    )
+    parser.add_argument("elf", type=Path, help="the image, as .pio/build/megaatmega2560/firmware.elf")
+    parser.add_argument("--seconds", type=float, default=20.0, help="emulated time (default: %(default)s)")
+    args = parser.parse_args()
+    status = budgets.report(args.elf)
+    print("\n".join(emulation(args.elf, args.seconds)), flush=True)
+    print("\n".join(simulator()), flush=True)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

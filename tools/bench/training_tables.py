@@ -1,0 +1,176 @@
+"""Writes the tables of docs/TRAINING.md and the shipped models' cards: bench.training_tables [--check].
+
+Both follow from the models' metrics, and from what an update costs a tile, which changes with the firmware.
+With --measure models are asked again, by their cards' seeds, as after a change of how tiles behave.
+Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
+"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from tilenca.base import paths
+from tilenca.evaluation.card import render_card
+from tilenca.model import cost
+from tilenca.model.file import load_model
+
+DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
+MODELS = paths.ROOT / "models"
+WIDTHS = ("digits-40", "digits-64", "digits")  # trained by the same recipe
+TASKS = ("hex", "letters", "pentominoes")
+# Of the rows of a width or a task: a short name, and how the row's name ends, with its steps.
+ROWS = {
+    "5x4 @60": ("the tiles' own clocks", 60),
+    "@1000": ("the tiles' own clocks", 1000),
+    "12x10 @100": ("12x10", 100),
+    "20x16 @200": ("20x16, never trained on", 200),
+    "changes": ("changes to every other class at once", 60),
+    "half of the messages lost": ("50 % of the messages lost, last one held", 60),
+    "one tile missing": ("one tile missing, where that leaves no doubt about the class", 60),
+    "random drawings": ("random drawings, never trained on", 60),
+    "other strokes": ("other choices of the same strokes, never trained on", 60),
+}
+
+Row = dict[str, Any]
+
+
+def metrics_of(model: str) -> dict[str, Any]:
+    """The metrics of a shipped model."""
+    metrics: dict[str, Any] = json.loads((MODELS / model / "metrics.json").read_text(encoding="utf-8"))
+    return metrics
+
+
+def share(model: str, wanted: tuple[str, int], asked_only: bool = False) -> str:
+    """The share of the first row whose name ends so; with `asked_only` of those that have a target."""
+    ending, steps = wanted
+    for row in metrics_of(model)["rows"]:
+        if row["name"].endswith(ending) and row["steps"] == steps and (row["target"] or not asked_only):
+            return f"{row['share']:.3f}"
+    return ""
+
+
+def by_paper(name: str, steps: int) -> str:
+    """The share of the paper's recipe, which was not trained on all that the digits' model was."""
+    drawings = name.removesuffix(", the tiles' own clocks")
+    new = f"{drawings}, never trained on"
+    return share("paper", (name, steps)) or share("paper", (new, steps))
+
+
+def digits() -> Iterator[list[str]]:
+    """Every row of the digits' model, with the paper's recipe beside it."""
+    yield [
+        "digits, share of runs with every tile right",
+        "after steps",
+        "the paper's recipe",
+        "`models/digits`",
+        "target",
+    ]
+    for row in metrics_of("digits")["rows"]:
+        if row["key"] == "drawings" and row["steps"] == 10:
+            continue
+        target = "" if row["target"] is None else f"{row['target']:.3f}{'' if row['holds'] else ' missed'}"
+        name = re.sub(r"digits(-(\w+))?\.toml", lambda match: match[2] or "5x4", row["name"])
+        yield [name, str(row["steps"]), by_paper(row["name"], row["steps"]), f"{row['share']:.3f}", target]
+
+
+def compared(models: tuple[str, ...]) -> Iterator[list[str]]:
+    """One line a model: what it costs a tile and how it does."""
+    names = [
+        name
+        for name, wanted in ROWS.items()
+        if any(share(model, wanted, asked_only=True) for model in models)
+    ]
+    yield ["model", "state", "hidden", "flash", "work per update", "targets held", *names]
+    for name in models:
+        model = load_model(MODELS / name)
+        costs = cost.check(model.dimensions, len(model.labels)).as_json()
+        yield [
+            f"[{name}](../models/{name}/README.md)",
+            str(costs["channels"]),
+            str(costs["hidden1"]),
+            f"{costs['flash_bytes']:,} bytes",
+            f"{costs['update_ms']} ms",
+            str(metrics_of(name)["targets_held"]),
+            *(share(name, ROWS[column], asked_only=True) for column in names),
+        ]
+
+
+TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
+    "digits": digits,
+    "widths": lambda: compared(WIDTHS),
+    "tasks": lambda: compared(TASKS),
+}
+
+
+def rendered(text: str) -> str:
+    """The document with its tables made anew.
+
+    Raises:
+        ValueError: it has no place for one of them.
+    """
+    for name, rows in TABLES.items():
+        lines = [f"| {' | '.join(row)} |" for row in rows()]
+        lines.insert(1, "|---" * (lines[0].count(" | ") + 1) + "|")
+        table = "\n".join((f"<!-- {name} -->", *lines, f"<!-- /{name} -->"))
+        before, begin, rest = text.partition(f"<!-- {name} -->")
+        _, end, after = rest.partition(f"<!-- /{name} -->")
+        if not (begin and end):
+            raise ValueError(f"{DOCUMENT}: no place <!-- {name} --> for a table")
+        text = before + table + after
+    return text
+
+
+def measure(name: str) -> None:
+    """Asks a shipped model again all that its card shows, and keeps the answers in its metrics."""
+    metrics, model = metrics_of(name), load_model(MODELS / name)
+    words = [sys.executable, "-m", "tilenca.cli", "evaluate", "--exam", "--json"]
+    words += ["--model", str(MODELS / name)]
+    words += ["--shapes", *(str(paths.ROOT / place) for place in model.made["shapes"])]
+    words += ["--runs", str(metrics["runs_per_drawing"]), "--seed", str(metrics["seed"])]
+    answer = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    new = metrics | json.loads(answer)["metrics"]
+    (MODELS / name / "metrics.json").write_text(json.dumps(new, indent=2) + "\n", encoding="utf-8")
+
+
+def documents() -> dict[Path, str]:
+    """What every document should say.
+
+    Raises:
+        ValueError: see `rendered`.
+    """
+    cards = {
+        path.parent / "README.md": render_card(load_model(path.parent), metrics_of(path.parent.name))
+        for path in sorted(MODELS.glob("*/model.json"))
+    }
+    return {DOCUMENT: rendered(DOCUMENT.read_text(encoding="utf-8"))} | cards
+
+
+def main() -> int:
+    """Writes the documents; with --check exits 1 where one differs."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where one differs")
+    parser.add_argument(
+        "--measure", nargs="+", default=[], metavar="MODEL", help="ask these models again before"
+    )
+    args = parser.parse_args()
+    for name in args.measure:
+        measure(name)
+    differ = {path: text for path, text in documents().items() if path.read_text(encoding="utf-8") != text}
+    for path, text in differ.items():
+        if args.check:
+            print(
+                f"{path}: differs from what the models' metrics say; run bench.training_tables",
+                file=sys.stderr,
+            )
+        else:
+            path.write_text(text, encoding="utf-8")
+    return int(args.check and bool(differ))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
