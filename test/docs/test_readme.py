@@ -1,4 +1,4 @@
-"""Beyond its code blocks (test_code_blocks.py): what the README promises of tiles on ports, its links and its film."""
+"""What the README promises beyond its code blocks (test_code_blocks.py): tiles on ports, links, the film."""
 
 import os
 import re
@@ -66,7 +66,7 @@ def test_links_lead_somewhere() -> None:
 
 
 def test_the_film_shows_the_shape_it_was_made_of() -> None:
-    """It is small, repeats for ever, and has a frame for each step of the command in docs/images/agree.toml."""
+    """It repeats for ever, and has a frame for each step of the command in docs/images/agree.toml."""
     film = paths.ROOT / FILM
     assert f"]({FILM})" in README
     assert film.stat().st_size < MOST_BYTES

@@ -1,7 +1,7 @@
 """The code blocks of a document, and how each is to be tested.
 
-A block of `sh` or `python` runs as it is written, in the order of the page, in one folder for each page. An HTML
-comment directly above a block says what is different for this block, in clauses with semicolons between them:
+A block of `sh` or `python` runs as it is written, in the order of the page, in one folder for each page. An
+HTML comment directly above a block says what is different for this block, in clauses with semicolons between:
 
     <!-- test: with --updates 30 -->            these arguments are added to each command of tilenca
     <!-- test: status 3, no tile on USB here -->  each command ends with this exit status

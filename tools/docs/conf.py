@@ -39,6 +39,8 @@ html_extra_path = ["root"]  # index.html, which leads to the root document
 html_copy_source = False
 html_show_copyright = False
 
+highlight_language = "text"  # of a block that names no language
+
 # Docstrings set code in single backquotes, as the rest of the project does.
 default_role = "literal"
 napoleon_google_docstring = True

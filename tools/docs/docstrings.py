@@ -1,7 +1,8 @@
 """Keeps colons of plain prose out of napoleon's hands.
 
-Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon. This project
-writes types as annotations only, so there a colon is one of the sentence. It is hidden while napoleon works.
+Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon. This
+project writes types as annotations only, so there a colon is part of the sentence. It is hidden while
+napoleon works.
 """
 
 from typing import TYPE_CHECKING, Any
