@@ -101,7 +101,7 @@ class Reader:
     def __enter__(self) -> "Reader":
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, *_error: object) -> None:
         for _, process in self._background:
             process.send_signal(signal.SIGTERM)
         for command, process in self._background:
