@@ -1,5 +1,6 @@
 """The documentation's own tools: pages from parsers and docstrings, and the check of the built links."""
 
+import ast
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,12 @@ def test_a_colon_of_prose_survives_napoleon() -> None:
     function = ["Adds: two numbers."]
     docstrings.hide_colons("function", function)
     assert function == ["Adds: two numbers."]
+
+
+def test_a_signature_with_a_factory_is_valid_python() -> None:
+    signature = docstrings.valid_signature("(links: dict[str, int]=<factory>, at: tuple[int, int]=(0, 0))")
+    assert signature == "(links: dict[str, int]=..., at: tuple[int, int]=(0, 0))"
+    ast.parse(f"def f{signature}: pass")
 
 
 @pytest.mark.parametrize(

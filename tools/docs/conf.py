@@ -45,7 +45,6 @@ highlight_language = "text"  # of a block that names no language
 default_role = "literal"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
-napoleon_attr_annotations = False  # each attribute has its own entry with its type
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True, "show-inheritance": True}

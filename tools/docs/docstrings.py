@@ -1,4 +1,4 @@
-"""Keeps colons of plain prose out of napoleon's hands.
+"""Keeps colons of plain prose out of napoleon's hands, and makes signatures of dataclasses valid Python.
 
 Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon. This
 project writes types as annotations only, so there a colon is part of the sentence. It is hidden while
@@ -34,6 +34,11 @@ def show_colons(lines: list[str]) -> None:
     lines[:] = [line.replace(HIDDEN_COLON, ":") for line in lines]
 
 
+def valid_signature(signature: str) -> str:
+    """A signature that Sphinx can parse: what a field's factory makes is written as `...`."""
+    return signature.replace("=<factory>", "=...")
+
+
 def setup(app: "Sphinx") -> dict[str, bool]:
     """Listens to autodoc before and after napoleon does."""
 
@@ -43,6 +48,12 @@ def setup(app: "Sphinx") -> dict[str, bool]:
     def after(_app: object, _kind: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:
         show_colons(lines)
 
+    def sign(
+        _app: object, _kind: str, _name: str, _object: Any, _options: Any, signature: str | None, returns: Any
+    ) -> tuple[str | None, Any]:
+        return (None if signature is None else valid_signature(signature)), returns
+
+    app.connect("autodoc-process-signature", sign)
     app.connect("autodoc-process-docstring", before, priority=BEFORE_NAPOLEON)
     app.connect("autodoc-process-docstring", after, priority=AFTER_NAPOLEON)
     return {"parallel_read_safe": True}
