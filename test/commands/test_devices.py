@@ -178,7 +178,7 @@ def test_a_program_that_has_the_port_open_is_named(pty: str) -> None:
 
 def test_a_lock_holds_even_where_there_is_no_room_for_a_name(pty: str) -> None:
     program = (
-        "import resource, sys; from tilenca.lock import port_lock; "
+        "import resource, sys; from tilenca.fleet.lock import port_lock; "
         "resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); lock = port_lock(sys.argv[1], 'us'); "
         "lock.__enter__(); print(flush=True); input()"
     )

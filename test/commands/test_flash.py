@@ -187,7 +187,7 @@ def test_where_there_is_no_room_what_failed_before_is_still_known(
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     remember({"port:1": False})
     program = (
-        "import resource; from tilenca.flashmemory import remember; "
+        "import resource; from tilenca.fleet.flash_state import remember; "
         "resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); remember({'port:2': False})"
     )
     subprocess.run([sys.executable, "-c", program], timeout=LIMIT_S, check=True)
