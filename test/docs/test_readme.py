@@ -48,8 +48,22 @@ def test_tiles_can_be_watched_as_soon_as_they_are_asked_for(tmp_path: Path) -> N
     assert not (tmp_path / "tiles").exists()
 
 
-@pytest.mark.parametrize("left", ["tiles/tile-01", "tiles.toml", "my-shapes.toml", "models/mine/model.json"])
-def test_what_following_the_readme_leaves_is_not_for_git(left: str) -> None:
+@pytest.mark.parametrize(
+    "left",
+    [
+        "tiles/tile-01",
+        "tiles.toml",
+        "my-shapes.toml",
+        "models/mine/model.json",
+        "models/kept/model.json",
+        "my-letters.toml",
+        "t.gif",
+        "frames.jsonl",
+        "lab.jsonl",
+        "pins.vcd",
+    ],
+)
+def test_what_following_the_documents_leaves_is_not_for_git(left: str) -> None:
     if not (paths.ROOT / ".git").exists():
         pytest.skip("not a clone")
     assert subprocess.run(["git", "-C", paths.ROOT, "check-ignore", "-q", left], check=False).returncode == 0

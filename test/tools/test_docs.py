@@ -70,8 +70,8 @@ def test_a_colon_of_prose_survives_napoleon() -> None:
 
 
 def test_a_signature_with_a_factory_is_valid_python() -> None:
-    signature = docstrings.valid_signature("(links: dict[str, int]=<factory>, at: tuple[int, int]=(0, 0))")
-    assert signature == "(links: dict[str, int]=..., at: tuple[int, int]=(0, 0))"
+    signature = docstrings.valid_signature("(links: dict[str, int] = <factory>, at: tuple[int, int]=(0, 0))")
+    assert signature == "(links: dict[str, int] = ..., at: tuple[int, int]=(0, 0))"
     ast.parse(f"def f{signature}: pass")
 
 

@@ -36,7 +36,7 @@ def show_colons(lines: list[str]) -> None:
 
 def valid_signature(signature: str) -> str:
     """A signature that Sphinx can parse: what a field's factory makes is written as `...`."""
-    return signature.replace("=<factory>", "=...")
+    return signature.replace("<factory>", "...")
 
 
 def setup(app: "Sphinx") -> dict[str, bool]:
