@@ -12,8 +12,9 @@ from types import TracebackType
 from typing import Self
 
 from tilenca.base import paths
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings, port_name
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
+from tilenca.emulator.types import port_name
 from tilenca.shapes.file import load_task
 
 LIMIT_S = 600
@@ -38,7 +39,7 @@ class Lab:
         conditions = EmulationSettings(seconds=None, bootloader=STOCK_BOOTLOADER, boot_spread_s=0.0)
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
-        self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
+        self._emulation = Emulation(task.shapes[0], task.labels, elf, conditions, firmware_settings(elf))
         clock = folder / "clock"
         clock.write_bytes(bytes(struct.calcsize("d")))
         with clock.open("r+b") as file:
