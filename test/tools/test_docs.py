@@ -1,5 +1,6 @@
 """The documentation's own tools: pages from parsers and docstrings, and the check of the built links."""
 
+import argparse
 import ast
 from pathlib import Path
 
@@ -19,7 +20,7 @@ def test_the_reference_has_every_option_of_every_command() -> None:
     for command in COMMANDS:
         assert f"\ntilenca {command}\n---" in f"\n{text}"
         for action in command_pages.command_parser(command)._actions:
-            for option in action.option_strings:
+            for option in action.option_strings if action.help != argparse.SUPPRESS else ():
                 assert f"{option}" in text
     assert ".. option:: --shape NAME" in text
     assert ".. option:: -h, --help" in text

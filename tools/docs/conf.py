@@ -45,6 +45,7 @@ highlight_language = "text"  # of a block that names no language
 default_role = "literal"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
+napoleon_attr_annotations = False  # the signature of a dataclass has them
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True, "show-inheritance": True}
