@@ -16,7 +16,13 @@ CONSTRAINTS = ROOT / "constraints.txt"
 PYPROJECT = ROOT / "pyproject.toml"
 
 # What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
-EXTRAS = {"demo": ["firmware"], "train": ["train"], "test": ["test", "wheel"], "check": ["check"]}
+EXTRAS = {
+    "demo": ["firmware"],
+    "train": ["train"],
+    "test": ["test", "wheel"],
+    "check": ["check"],
+    "docs": ["docs"],
+}
 # The version is here; an installed package tells the one it was installed with.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 

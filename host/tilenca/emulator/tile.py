@@ -1,8 +1,9 @@
 """One emulated tile, as eyes, fingers, cables and a debugger reach it."""
 
-from typing import Any, Protocol
+from typing import Any
 
 from tilenca.base.errors import UsageError
+from tilenca.emulator.home import Home, Nowhere
 from tilenca.emulator.library import call, library, new, numbers, text
 from tilenca.emulator.probe import PinProbe, WireTap, pin_port
 from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
@@ -14,40 +15,6 @@ MOST_TILES = 4096
 DATA_SPACE = 0x800000
 
 
-class Home(Protocol):
-    """What a tile needs of the array it is in."""
-
-    @property
-    def handle(self) -> Any:
-        """The array as the C library knows it."""
-
-    def symbol(self, name: str) -> tuple[int, int]:
-        """Address and size of a symbol."""
-
-    def code_address(self, place: str | int) -> int:
-        """Byte address of a function, or the number given."""
-
-    def function_at(self, address: int) -> str:
-        """The function that contains a byte of flash."""
-
-
-class _Nowhere:
-    """Where a tile is that an array no longer has."""
-
-    @property
-    def handle(self) -> Any:
-        raise UsageError("this tile came after the moment that was restored; it is no more")
-
-    def symbol(self, name: str) -> tuple[int, int]:
-        raise UsageError(f"'{name}' of a tile that is no more")
-
-    def code_address(self, place: str | int) -> int:
-        raise UsageError(f"'{place}' of a tile that is no more")
-
-    def function_at(self, address: int) -> str:
-        raise UsageError(f"0x{address:05X} of a tile that is no more")
-
-
 class EmulatedTile:
     """One tile of an array, as eyes, fingers, cables and a debugger reach it. Made by `Array`."""
 
@@ -57,7 +24,7 @@ class EmulatedTile:
 
     def retire(self) -> None:
         """The array it was in has gone back to before it was there."""
-        self._array = _Nowhere()
+        self._array = Nowhere()
 
     @property
     def segments(self) -> int:
@@ -99,13 +66,9 @@ class EmulatedTile:
     @property
     def cycles(self) -> tuple[int, int]:
         """Clock cycles of the time it was switched on: in all, and asleep."""
-        total, asleep, off = self._cycles()
-        return total - off, asleep
-
-    def _cycles(self) -> tuple[int, int, int]:
         cycles = new("tilenca_cycles*")
         self._call("tile_cycles", cycles)
-        return cycles.total, cycles.asleep, cycles.off
+        return cycles.total - cycles.off, cycles.asleep
 
     @property
     def sleep_share(self) -> float:
