@@ -3,7 +3,7 @@
 
 #include "lanes.h"
 
-namespace training {
+namespace rollout {
 namespace { // compiled several times over for different processors: each file has its own
 
 // A matrix of `depth` rows of `vectors` * kWidth floats, without gaps.
@@ -84,4 +84,4 @@ inline void product(const float* rows, size_t stride, size_t count, const Matrix
 }
 
 } // namespace
-} // namespace training
+} // namespace rollout

@@ -8,7 +8,7 @@
 #include "lanes.h"
 #include "product.h"
 
-namespace training {
+namespace rollout {
 namespace { // see lanes.h
 
 inline int padded(int width) {
@@ -47,4 +47,4 @@ inline std::vector<float> padded_bias(const float* values, int count, float more
 }
 
 } // namespace
-} // namespace training
+} // namespace rollout

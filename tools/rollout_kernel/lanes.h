@@ -4,7 +4,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-namespace training {
+#include "tilenca/rollout.h"
+
+namespace rollout {
 namespace { // compiled several times over for different processors: each file has its own
 
 #if defined(__AVX512F__)
@@ -18,7 +20,7 @@ constexpr int kWidth = 4;
 constexpr int kSums = 12;
 #endif
 
-constexpr int kPadding = 16; // floats; rows of matrices are padded to a multiple, whatever the processor
+constexpr int kPadding = TILENCA_ROLLOUT_PADDING; // floats, for rows of matrices, too, whatever the processor
 
 using Lanes = float __attribute__((vector_size(kWidth * sizeof(float)), aligned(4), may_alias));
 using Whole = int32_t __attribute__((vector_size(kWidth * sizeof(float))));
@@ -52,4 +54,4 @@ inline Lanes through_clamp(Lanes gradient, Lanes clamped, float low, float high)
 }
 
 } // namespace
-} // namespace training
+} // namespace rollout
