@@ -21,7 +21,7 @@ unexport PLATFORMIO_CORE_DIR
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
-	imports types budgets sanitize docs format train bench clean
+	imports types budgets sanitize docs format train bench wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -38,8 +38,9 @@ demo: setup-demo ## build the firmware and let emulated tiles name the ten digit
 	@$(TILENCA) emulate --shape all
 	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch"
 
-test: setup-test ## run every test: the firmware's core on this machine, then host and emulator
+test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
+	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest
 
@@ -93,6 +94,11 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 
+wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
+	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) export --check >&2
+	@$(TOOL) release.wheel
+
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/release build/debug build/sanitize build/strict build/models build/docs
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/models build/docs build/wheel
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

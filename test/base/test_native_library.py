@@ -1,6 +1,5 @@
 """Libraries that are missing, damaged, foreign or stale are said to be, in one line that names the remedy."""
 
-import importlib.resources
 import os
 import re
 import subprocess
@@ -9,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tilenca.base import native_library
+from tilenca.base import native_library, paths
 from tilenca.base.errors import BuildError
 from tilenca.base.native_library import FOLDERS, Files, declarations, find, load, load_files
 
@@ -164,12 +163,25 @@ def test_what_is_for_the_preprocessor_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_installed_library_comes_before_the_checkout_s(
+def test_an_installed_package_has_its_libraries_inside(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(importlib.resources, "files", lambda package: tmp_path)
     assert find(name).library.parent.name == "release"
-    (tmp_path / "lib").mkdir()
+    monkeypatch.setattr(paths, "CHECKOUT", None)
+    monkeypatch.setattr(paths, "PACKAGE", tmp_path)
     library = tmp_path / "lib" / f"libtilenca_{name}.so"
-    library.touch()
     assert find(name) == Files(library, tmp_path / "lib" / "include" / "tilenca" / f"{name}.h")
+    assert refused(name, library) == f"{library}: missing; run: pip install --force-reinstall tilenca"
+
+
+def test_threads_that_load_at_the_same_time_get_the_same_library() -> None:
+    program = (
+        "import sys\n"
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "from tilenca.base.native_library import load\n"
+        "sys.setswitchinterval(1e-6)\n"
+        "with ThreadPoolExecutor(8) as pool: found = list(pool.map(load, ['simulator'] * 8))\n"
+        "print(len({id(library.ffi) for library in found}))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"

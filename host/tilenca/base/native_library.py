@@ -7,21 +7,21 @@ threads run while a function of a library does.
     simulator.lib.tilenca_simulator_abi_version()
 """
 
-import importlib.resources
 import os
 import re
 import sys
+import threading
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from cffi import FFI
 
+from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
-from tilenca.base.paths import BUILD, ROOT
+from tilenca.base.project import install_remedy
 
-# The libraries by name (libtilenca_NAME.so, NAME.h): the folder of their sources, and what builds them.
+# The libraries by name (libtilenca_NAME.so, NAME.h): the folder of their sources, and what builds them there.
 FOLDERS = {"emulator": "emulator", "simulator": "simulator", "rollout": "rollout_kernel"}
 REMEDIES = {"emulator": "run: make setup", "simulator": "run: make setup", "rollout": "run: make setup-train"}
 # Another folder of libraries than the release build's, such as that of the sanitizers (CONTRIBUTING.md).
@@ -85,29 +85,39 @@ class Library:
 def find(name: str) -> Files:
     """The library and its header: those of the installed package, else those of the checkout."""
     file_name = f"libtilenca_{name}.so"
-    installed = Path(str(importlib.resources.files("tilenca"))) / "lib"
-    if (installed / file_name).is_file():
+    if paths.CHECKOUT is None:
+        installed = paths.PACKAGE / "lib"
         return Files(installed / file_name, installed / "include" / "tilenca" / f"{name}.h")
-    built = Path(os.environ.get(OTHER_FOLDER) or BUILD / "release")
-    return Files(built / file_name, ROOT / "tools" / FOLDERS[name] / "include" / "tilenca" / f"{name}.h")
+    built = Path(os.environ.get(OTHER_FOLDER) or paths.BUILD / "release")
+    return Files(
+        built / file_name, paths.CHECKOUT / "tools" / FOLDERS[name] / "include" / "tilenca" / f"{name}.h"
+    )
 
 
-@cache
+_loaded: dict[str, Library] = {}
+_loading = threading.Lock()
+
+
 def load(name: str) -> Library:
-    """The library of that name.
+    """The library of that name; the same for all threads, since C values of two loads do not mix.
 
     Raises:
         BuildError: it is missing, damaged, for another machine, or not of this version of the header; the
             message names the file and what to run.
     """
-    return load_files(name, find(name))
+    found = _loaded.get(name)
+    if found is None:
+        with _loading:
+            found = _loaded.get(name) or _loaded.setdefault(name, load_files(name, find(name)))
+    return found
 
 
 def load_files(name: str, files: Files) -> Library:
     """Like `load`, from the files given."""
-    path, remedy = files.library, REMEDIES[name]
+    path = files.library
+    remedy = REMEDIES[name] if paths.CHECKOUT else f"run: {install_remedy()}"
     if not path.is_file():
-        raise BuildError(f"{path}: not built yet; {remedy}")
+        raise BuildError(f"{path}: {'not built yet' if paths.CHECKOUT else 'missing'}; {remedy}")
     ffi = FFI()
     try:
         ffi.cdef(declarations(files.header.read_text(encoding="utf-8")))
