@@ -172,7 +172,7 @@ def test_make_alone_lists_the_targets() -> None:
     [
         ("demo", ["demo"]),
         ("test", ["demo", "train", "test"]),
-        ("docs", ["demo", "docs"]),
+        ("docs", ["demo", "train", "docs"]),
         ("check", ["demo", "train", "test", "docs", "check"]),
     ],
 )
