@@ -62,7 +62,7 @@ class Taken:
     given: Circumstances
 
     @property
-    def asked(self) -> NDArray[np.bool_]:
+    def counted(self) -> NDArray[np.bool_]:
         """(B,) whether a grid must be right: all of its tiles are there, and were from the beginning."""
         return ~(self.given.staggered | np.logical_or.reduceat(self.given.away, self.batch.starts))
 
@@ -163,7 +163,7 @@ class Pools:
         padded[batch.sample, batch.place] = np.where(taken.given.away[:, None], self._seed, states)
         self.perturbed.states[taken.perturbed] = padded[:count]
         self.perturbed.age[taken.perturbed] += ticks[:count]
-        self.perturbed.age[taken.perturbed[~taken.asked[:count]]] = 0
+        self.perturbed.age[taken.perturbed[~taken.counted[:count]]] = 0
         self.undisturbed.states[taken.undisturbed] = padded[count:]
         self.undisturbed.age[taken.undisturbed] += ticks[count:]
         # A grid that was disturbed a moment ago may be wrong; converged grids must be right.

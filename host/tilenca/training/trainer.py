@@ -20,6 +20,7 @@ from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.curriculum import Curriculum
+from tilenca.training.loss import Goal, loss_of, scores_of
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
@@ -145,19 +146,15 @@ class Trainer:
 
         start = torch.from_numpy(taken.states).to(self.device)
         end = rollout(self.net, start * self.net.units, schedule) / self.net.units
-        target = torch.from_numpy(batch.target).to(self.device)
-        scores = end[:, -len(self.config.labels) :]
-        wanted = torch.nn.functional.one_hot(target, scores.shape[1]).to(scores.dtype)
-        counts = torch.from_numpy(taken.asked[batch.sample]).to(self.device)
-        loss = ((scores - wanted).square().sum(dim=1) * counts).mean()
-        if recipe.stability_penalty > 0:
-            # Only where every tile is right: a converged wrong answer must stay free to change.
-            still = torch.from_numpy(taken.converged[batch.sample]).to(self.device)
-            still &= scores.argmax(dim=1) == target
-            loss = loss + recipe.stability_penalty * ((end - start).square().sum(dim=1) * still).mean()
+        target, counted, converged = (
+            torch.from_numpy(array).to(self.device)
+            for array in (batch.target, taken.counted[batch.sample], taken.converged[batch.sample])
+        )
+        goal = Goal(len(self.config.labels), target, counted, converged)
+        loss = loss_of(start, end, goal, recipe.stability_penalty)
 
         self._descend(loss)
-        right = _all_right(scores, target, batch)
+        right = _all_right(scores_of(end, goal.classes), target, batch)
         self.pools.give_back(taken, end.detach().cpu().numpy(), lengths, right)
         self.iteration += 1
         if recipe.refresh_every and self.iteration % recipe.refresh_every == 0:
