@@ -107,28 +107,11 @@ def draw_schedule(
         random: the only source of chance.
         given: what else happens to the samples.
     """
-    samples, cells, ticks = len(batch.starts), len(batch.sample), int(lengths.max())
+    cells, ticks = len(batch.sample), int(lengths.max())
     length = lengths[batch.sample]
-
-    def share(most: float, affected: float) -> NDArray[np.float64]:
-        """(B,) share of its messages that each sample loses; 0 in lossless samples."""
-        return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.lossless
-
-    now = np.arange(ticks)[:, None]
-    rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
-    fires = random.random((ticks, cells), dtype=np.float32) < rate.astype(np.float32)
-    arrives = np.ones((ticks, cells), dtype=np.bool_)
-    strict = np.zeros(cells, np.bool_)  # a cell none of whose messages has arrived is absent
-    if recipe.clocks > 0:
-        strict = (random.random(samples) < recipe.clocks)[batch.sample]
-        on_clock = np.flatnonzero(strict)
-        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, ticks, random)
-    if recipe.stale > 0:
-        stale = share(recipe.max_stale, recipe.stale)
-        strict |= stale[batch.sample] > 0
-        some = np.flatnonzero(stale[batch.sample])
-        arrives[:, some] &= random.random((ticks, len(some)), dtype=np.float32) >= stale[batch.sample[some]]
+    fires, arrives, strict = _draw_ticks(recipe, batch, ticks, random, given)
     boot = np.where(given.away, length, random.integers(0, length) * given.staggered[batch.sample])
+    now = np.arange(ticks)[:, None]
     fires &= (now < length) & (now >= boot)
     when, updating = np.nonzero(fires)
     neighbours = batch.neighbours[updating]
@@ -136,16 +119,80 @@ def draw_schedule(
     if known.any():
         neighbours[np.append(known, 0)[neighbours] > when[:, None]] = cells
     if recipe.lossy > 0:
-        loss = share(recipe.max_loss, recipe.lossy)
-        lasts = random.integers(1, recipe.longest_loss + 1, samples)
-        fate = random.random((ticks, cells, 4), dtype=np.float32)[
-            when // lasts[batch.sample][updating], updating
-        ]
-        neighbours[fate < loss[batch.sample][updating, None]] = cells
+        neighbours[_draw_losses(recipe, batch, (when, updating), ticks, random, given)] = cells
     reads = np.concatenate((updating[:, None], neighbours + cells), axis=1).astype(np.int32)
     return UpdateSchedule(
         np.bincount(when, minlength=ticks), updating.astype(np.int32), reads, arrives, batch.starts
     )
+
+
+def _draw_ticks(
+    recipe: Recipe, batch: Batch, ticks: int, random: np.random.Generator, given: Circumstances
+) -> tuple[Flags, Flags, Flags]:
+    """Draws the ticks in which cells fire and in which their messages arrive, as if all were switched on.
+
+    Returns:
+        (T, N) fires, (T, N) arrives, and (N,) strict: a strict cell is absent for its neighbours until they
+        have received one of its messages.
+    """
+    samples, cells = len(batch.starts), len(batch.sample)
+    rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
+    fires = random.random((ticks, cells), dtype=np.float32) < rate.astype(np.float32)
+    arrives = np.ones((ticks, cells), dtype=np.bool_)
+    strict = np.zeros(cells, np.bool_)
+    if recipe.clocks > 0:
+        strict = (random.random(samples) < recipe.clocks)[batch.sample]
+        on_clock = np.flatnonzero(strict)
+        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, ticks, random)
+    if recipe.stale > 0:
+        stale = _draw_shares(recipe.max_stale, recipe.stale, random, given)
+        strict |= stale[batch.sample] > 0
+        some = np.flatnonzero(stale[batch.sample])
+        arrives[:, some] &= random.random((ticks, len(some)), dtype=np.float32) >= stale[batch.sample[some]]
+    return fires, arrives, strict
+
+
+def _draw_losses(
+    recipe: Recipe,
+    batch: Batch,
+    updates: tuple[NDArray[np.int64], NDArray[np.int64]],
+    ticks: int,
+    random: np.random.Generator,
+    given: Circumstances,
+) -> Flags:
+    """(E, 4) the neighbours' messages that are lost for each update; a loss lasts for some ticks.
+
+    Args:
+        recipe: the shares.
+        batch: the drawings.
+        updates: (E,) the tick and (E,) the cell of each update.
+        ticks: T.
+        random: the only source of chance.
+        given: the samples that lose no message.
+    """
+    when, updating = updates
+    loss = _draw_shares(recipe.max_loss, recipe.lossy, random, given)
+    lasts = random.integers(1, recipe.longest_loss + 1, len(batch.starts))
+    fate = random.random((ticks, len(batch.sample), 4), dtype=np.float32)[
+        when // lasts[batch.sample][updating], updating
+    ]
+    lost: Flags = fate < loss[batch.sample][updating, None]
+    return lost
+
+
+def _draw_shares(
+    most: float, affected: float, random: np.random.Generator, given: Circumstances
+) -> NDArray[np.float64]:
+    """(B,) share of its messages that each sample loses; 0 where it is lossless or not affected.
+
+    Args:
+        most: the largest share.
+        affected: the share of samples that are affected.
+        random: the only source of chance.
+        given: the samples that lose no message.
+    """
+    samples = len(given.lossless)
+    return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.lossless
 
 
 def _first_received(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
