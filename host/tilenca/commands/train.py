@@ -21,9 +21,9 @@ from tilenca.model import cost
 from tilenca.model.file import MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.shapes.batch import Drawings, load_training_task
+from tilenca.shapes.derive import known_of
 from tilenca.shapes.file import UNKNOWN
 from tilenca.shapes.sizes import Sizes
-from tilenca.shapes.variants import Known
 from tilenca.training.curriculum import labels_of
 from tilenca.training.device import check_device
 from tilenca.training.recipes import RECIPES, Recipe, aims_of, find_recipe
@@ -206,7 +206,7 @@ def _announce(plan: TrainingPlan, fits: cost.Fit) -> None:
             "tiles would learn to say that they do not know"
         )
     if plan.recipe.damaged:
-        known = Known((shape.label, shape.rows) for shape in plan.task.shapes)
+        known = known_of(plan.task.shapes)
         doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
         if doubts:
             warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
