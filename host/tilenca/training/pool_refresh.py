@@ -98,7 +98,7 @@ def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Gener
 
     chosen = pools.pick_whole(runs, drawn=True)
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
-    back = Simulator(engine, drawings, chosen, Conditions("clock"), random, fault=away)
+    back = Simulator(engine, drawings, chosen, Conditions("clock", fault=away), random)
     back.run(BEFORE)
     yield back
 

@@ -19,7 +19,7 @@ class Result:
 
     Attributes:
         model: the integer model.
-        metrics: of `metrics.validate`, and how training ended.
+        metrics: of `evaluator.validate`, and how training ended.
         history: (iteration, loss, agreement) at intervals.
         checks: (iteration, shortfall, share by kind of question) of the short measurements.
     """

@@ -16,7 +16,7 @@ import torch
 
 from tilenca.base.errors import InterruptedRunError, TilencaError
 from tilenca.base.signals import SIGNALS
-from tilenca.evaluation.metrics import Evaluator
+from tilenca.evaluation.evaluator import Evaluator
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
