@@ -3,13 +3,12 @@
 No port and no clock. `protocol.commands` has the host's sentences, `protocol.frames` the tiles' frames.
 """
 
-import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from tilenca.base.sides import SIDES
+from tilenca.protocol import patterns
 from tilenca.protocol.checksums import checksum
-from tilenca.protocol.constants import MAX_CHANNELS, PROTOCOL_VERSION
+from tilenca.protocol.constants import PROTOCOL_VERSION
 
 
 @dataclass(frozen=True)
@@ -198,36 +197,13 @@ def format_sentence(sentence: Sentence) -> bytes:
     return framed(",".join("" if value is None else str(value) for value in fields))
 
 
-def _fields(*parts: str) -> re.Pattern[str]:
-    return re.compile(",".join(parts))
-
-
-_SENTENCE = re.compile(rb"\$([ -#%-)+-~]*)\*([0-9A-F]{2})")
-_NUMBER, _OPTIONAL, _SIDE = r"(\d{1,10})", r"(\d{0,10})", rf"([{SIDES}])"
-_WORD, _TEXT = r"([A-Z]{1,16})", r"([ -+\--~]*)"
-_HEX2, _HEX4, _HEX8 = (rf"([0-9A-F]{{{digits}}})" for digits in (2, 4, 8))
-_HELLO = _fields("HELLO", *[_NUMBER] * 2, _HEX4, *[_NUMBER] * 4, _HEX2, _HEX8, _NUMBER)
-_STATE = rf"((?:[0-9A-F]{{2}}){{1,{MAX_CHANNELS}}})"
-_LABEL, _LINKS, _OPTIONAL_BYTE = r"([!-+\--~]?)", r"([N-][E-][S-][W-])", r"(\d{0,3})"
-_TILE = _fields("TILE", *[_NUMBER] * 3, _LABEL, *[_OPTIONAL_BYTE] * 2, _LINKS, _STATE)
-_LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
-_TIME = _fields("TIME", *[_NUMBER] * 7)
-_ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
-_ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")
-_NAK = _fields("NAK", _NUMBER, _WORD, _TEXT)
-# Sentences of other versions, in case the greeting was missed: TILE of versions 1 and 2, LINK of version 1.
-_OTHER_HELLO = re.compile(rf"HELLO,{_NUMBER},{_NUMBER}(?:,.*)?")
-_TILE_2 = _fields("TILE", *[_NUMBER] * 3, _LABEL, _LINKS, _STATE)
-_LINK_1 = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL)
-
-
 def parse_sentence(line: bytes | str) -> Sentence | None:
     """The sentence that a line is, or None if it is anything else: noise, damaged, or of an unknown name.
 
     Never raises, whatever the line holds. White space around the sentence (CR LF) is ignored.
     """
     raw = line.encode("ascii", "replace") if isinstance(line, str) else line
-    match = _SENTENCE.fullmatch(raw.strip())
+    match = patterns.SENTENCE.fullmatch(raw.strip())
     if match is None or checksum(match[1]) != int(match[2], 16):
         return None
     text = match[1].decode("ascii")
@@ -236,22 +212,22 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
 
 
 def _hello(text: str) -> Sentence | None:
-    if (found := _HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
+    if (found := patterns.HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
         version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
             found.groups()
         )
         numbers = int(channels), int(classes), int(period_ms), int(updates)
         ids = int(cause, 16), int(firmware, 16), int(light)
         return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
-    if (found := _OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
+    if (found := patterns.OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
         return OtherVersionSentence(int(found[1]), int(found[2]))
     return None
 
 
 def _tile(text: str) -> Sentence | None:
-    if found := _TILE_2.fullmatch(text):
+    if found := patterns.TILE_2.fullmatch(text):
         return OtherVersionSentence(2, int(found[1]))
-    if (found := _TILE.fullmatch(text)) is None:
+    if (found := patterns.TILE.fullmatch(text)) is None:
         return None
     tile, uptime_ms, updates, label, decided, margin, links, state = found.groups()
     if bool(label) != bool(decided) or (margin and not decided):
@@ -263,33 +239,33 @@ def _tile(text: str) -> Sentence | None:
 
 
 def _link(text: str) -> Sentence | None:
-    if found := _LINK.fullmatch(text):
+    if found := patterns.LINK.fullmatch(text):
         tile, uptime_ms, side, *counts, age, overruns, neighbour, neighbour_side = found.groups()
         sent, received, corrupt, lost, foreign = map(int, counts)
         return LinkSentence(
             int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign,
             int(age) if age else None, int(overruns), int(neighbour) if neighbour else None, neighbour_side,
         )  # fmt: skip
-    return OtherVersionSentence(1, int(found[1])) if (found := _LINK_1.fullmatch(text)) else None
+    return OtherVersionSentence(1, int(found[1])) if (found := patterns.LINK_1.fullmatch(text)) else None
 
 
 def _time(text: str) -> Sentence | None:
-    return TimeSentence(*map(int, found.groups())) if (found := _TIME.fullmatch(text)) else None
+    return TimeSentence(*map(int, found.groups())) if (found := patterns.TIME.fullmatch(text)) else None
 
 
 def _error(text: str) -> Sentence | None:
-    found = _ERROR.fullmatch(text)
+    found = patterns.ERROR.fullmatch(text)
     return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
 
 
 def _ack(text: str) -> Sentence | None:
-    if (found := _ACK.fullmatch(text)) is None:
+    if (found := patterns.ACK.fullmatch(text)) is None:
         return None
     return AckSentence(int(found[1]), found[2], tuple(found[3].split(",")[1:]))
 
 
 def _nak(text: str) -> Sentence | None:
-    found = _NAK.fullmatch(text)
+    found = patterns.NAK.fullmatch(text)
     return NakSentence(int(found[1]), found[2], found[3]) if found else None
 
 
