@@ -14,7 +14,7 @@ PYTHON = VENV / "bin" / "python"
 CONSTRAINTS = ROOT / "constraints.txt"
 PYPROJECT = ROOT / "pyproject.toml"
 
-# What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
+# The extras of pyproject.toml that each level of the set-up needs.
 EXTRAS = {"demo": "firmware", "train": "train", "test": "test", "check": "check", "docs": "docs"}
 
 
@@ -62,7 +62,7 @@ def _make_venv() -> None:
 
 
 def refuse_link(venv: Path) -> None:
-    """Does not touch an environment elsewhere: making one here would empty it.
+    """Refuses a link to an environment elsewhere: making one here would empty that.
 
     Raises:
         SetupError: `venv` is a link.

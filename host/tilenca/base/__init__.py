@@ -1,1 +1,1 @@
-"""What every room may use: errors, paths, standard streams, signals, the four sides."""
+"""The base of every room: errors, paths, standard streams, signals, the four sides."""

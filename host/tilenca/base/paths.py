@@ -1,4 +1,4 @@
-"""Where the project's files are, from whatever directory a command was started."""
+"""The places of the project's files, independent of the current directory."""
 
 from pathlib import Path
 

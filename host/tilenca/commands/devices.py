@@ -117,7 +117,7 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
 
 
 def _before(file: Path) -> tuple[list[Place], str]:
-    """What the file says so far, and why it cannot be read, if so."""
+    """The file's entries so far, and the reason if it cannot be read."""
     if not file.exists():
         return [], ""
     try:
@@ -133,7 +133,7 @@ def _aside(file: Path) -> Path:
 
 
 def _put_aside(file: Path, complaint: str) -> None:
-    """Keeps a file that cannot be read, lest what a person wrote is lost."""
+    """Keeps a copy of a file that cannot be read, so that a person's entries are not lost."""
     aside = _aside(file)
     try:
         file.replace(aside)

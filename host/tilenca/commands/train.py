@@ -141,7 +141,7 @@ def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
 
 
 def _metadata(args: argparse.Namespace) -> dict[str, object]:
-    """How the model was made, beside what its configuration says."""
+    """The model's origin, as far as its configuration does not tell it."""
     return {
         "command": _command(args),
         "shapes": [_place(path) for path in args.shapes],

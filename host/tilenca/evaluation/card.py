@@ -1,4 +1,4 @@
-"""The model card: how a model was made, what it scores, and how to make it again."""
+"""The model card: a model's origin, its scores, and the command that makes it again."""
 
 from typing import Any
 

@@ -71,14 +71,14 @@ class Measurement:
     Attributes:
         key: the kind of measurement.
         name: as the table calls it.
-        steps: after how many steps (updates per tile) since the start or the last change.
+        steps: the number of steps (updates per tile) since the start or the last change.
         drawings: how many drawings.
         runs: how many runs of all of them.
         share: of the runs in which every tile was right.
         low, high: 95 % confidence interval of the share (Wilson's), for these drawings.
         worst: the drawing with the smallest share, and that share.
-        convergence: steps until all tiles were right and stayed so: median, 95 % (None: never); None where
-            that makes no sense.
+        convergence: steps until all tiles were right and stayed so: median, 95 % (None: never); None for rows
+        without such steps.
         target: least share; None: only measured.
         floor: least share of every drawing.
     """
@@ -103,7 +103,7 @@ class Measurement:
 
     @property
     def shortfall(self) -> float:
-        """How far below its target the row is, 0..1."""
+        """The distance below the row's target, 0..1."""
         if self.target is None:
             return 0.0
         return max(0.0, self.target - self.share, self.floor - self.worst[1])

@@ -29,7 +29,7 @@ class Case:
         kind: decides the target, see `tilenca.evaluation.metrics.TARGETS`.
         name: as tables call it.
         drawings: with the model's labels.
-        steps: after how many steps all tiles must agree.
+        steps: the number of steps after which all tiles must agree.
         held_out: whether training never saw these drawings.
         aimed: whether the model was trained for such drawings, so that there is a target to reach.
     """

@@ -17,7 +17,7 @@ FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
 
 
 def build() -> None:
-    """Builds the firmware; PlatformIO itself knows what is up to date. Its output is shown only if it fails.
+    """Builds the firmware; PlatformIO skips what is up to date. Shows its output only if it fails.
 
     Raises:
         BuildError: PlatformIO is missing or the build failed.
@@ -31,7 +31,7 @@ def build() -> None:
     building: subprocess.Popen[bytes] | None = None
     try:
         with held_back():
-            # A process group of its own: what the build started ends with it.
+            # A process group of its own: the processes that the build starts end with it.
             building = subprocess.Popen(
                 command,
                 cwd=paths.ROOT,

@@ -43,7 +43,7 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[P
 
     Args:
         boards: the boards.
-        blink: let each tile blink and ask the person for its place, whatever tiles say.
+        blink: let each tile blink and ask the person for its place, even if its links tell it.
         assign: give tiles without an id of their own a free one.
         before: the places known so far, by the boards' names now. The ids and places of boards that do not
             answer are not free.
@@ -72,7 +72,7 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[P
 
 
 def _greetings(answers: Mapping[str, Answer]) -> dict[str, HelloSentence]:
-    """The greetings of the tiles that answered; the others are told of."""
+    """The greetings of the tiles that answered; warns of the others."""
     for name, answer in answers.items():
         if answer.hello is None:
             warn(f"{name}: {answer.problem}; left out")
@@ -175,7 +175,7 @@ def _places_from_links(tiles: Mapping[str, int], fleet: Fleet) -> dict[int, tupl
 def _places_from_person(
     reader: PortReader, tiles: Mapping[str, int], away: Sequence[Place]
 ) -> dict[int, tuple[int, int]]:
-    """Lets one tile after another blink, and takes its place from standard input."""
+    """Lets one tile after another blink, and reads its place from standard input."""
     taken = {(place.row, place.col) for place in away if place.tile not in tiles.values()}
     cells: dict[int, tuple[int, int]] = {}
     for name, tile in tiles.items():

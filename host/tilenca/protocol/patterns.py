@@ -1,6 +1,6 @@
 """The patterns of the sentences on USB (docs/PROTOCOL.md section 3).
 
-`SENTENCE` is the frame around all of them; the others match what stands between `$` and `*`.
+`SENTENCE` is the frame around all of them; the others match the text between `$` and `*`.
 """
 
 import re

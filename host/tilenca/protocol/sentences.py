@@ -13,11 +13,11 @@ from tilenca.protocol.constants import PROTOCOL_VERSION
 
 @dataclass(frozen=True)
 class HelloSentence:
-    """What a tile says at boot and when asked.
+    """A tile's greeting at boot and on request.
 
     Attributes:
         tile: its id; 0: none was set.
-        updates: after so many it stops; 0: never.
+        updates: the number after which it stops; 0: it never stops.
         reset_cause: MCUSR, as far as the tile knows it.
         firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
         brightness: 0..255.
@@ -37,7 +37,7 @@ class HelloSentence:
 
 @dataclass(frozen=True)
 class TileSentence:
-    """What a tile is and shows; `label` is empty while nothing is shown.
+    """A tile's state and display; `label` is empty while nothing is shown.
 
     Attributes:
         class_index: the class that the tile decided for; None while nothing is shown.
@@ -59,11 +59,11 @@ class TileSentence:
 
 @dataclass(frozen=True)
 class LinkSentence:
-    """How one side's link does.
+    """The counters of one side's link.
 
     Attributes:
         age_ms: of the last good frame; None before the first, as are the next two.
-        overruns: bytes lost for want of room; south: how often edges were, or were given up as noise.
+        overruns: bytes lost because a buffer was full; south: how often edges were lost, or dropped as noise.
         neighbour: id of the tile that sent the last good frame; 0 if it has none.
         neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
     """
@@ -84,14 +84,14 @@ class LinkSentence:
 
 @dataclass(frozen=True)
 class TimeSentence:
-    """Where a tile's time and memory go.
+    """A tile's use of time and memory.
 
     Attributes:
         compute_us: the longest computation of an update since the last such sentence.
         awake_permille: share of the time since then that the main loop did not sleep.
         gap_us: the longest time from one turn of the main loop to the next since then.
-        stack_unused: bytes of the stack's room that were never used so far.
-        dropped: sentences dropped since boot, for want of room.
+        stack_unused: bytes of the stack's room that have never been used.
+        dropped: sentences dropped since boot because the buffer was full.
     """
 
     tile: int
@@ -105,7 +105,7 @@ class TimeSentence:
 
 @dataclass(frozen=True)
 class ErrorSentence:
-    """Something is wrong with a tile: a code word, and a text for people."""
+    """An error of a tile: a code word, and a text for people."""
 
     tile: int
     uptime_ms: int
@@ -115,7 +115,7 @@ class ErrorSentence:
 
 @dataclass(frozen=True)
 class AckSentence:
-    """A command was carried out: its name, and its fields as now in force."""
+    """A command was carried out: its name, and the fields now in force."""
 
     tile: int
     command: str
@@ -133,14 +133,14 @@ class NakSentence:
 
 @dataclass(frozen=True)
 class OtherVersionSentence:
-    """A good sentence of a tile that speaks another version of the protocol than we do."""
+    """A good sentence of a tile whose protocol version is not ours."""
 
     version: int
     tile: int
 
     @property
     def remedy(self) -> str:
-        """What it is and what to do about it."""
+        """The fact and the remedy."""
         return (
             f"speaks protocol {self.version}, these tools speak {PROTOCOL_VERSION}: "
             "flash it with the firmware that belongs to them (tilenca flash)"
@@ -169,7 +169,7 @@ def format_sentence(sentence: Sentence) -> bytes:
     """The sentence as a tile writes it, CR LF included.
 
     Raises:
-        ValueError: of another version's sentences only the version is known.
+        ValueError: the fields of another version's sentences are unknown.
     """
     fields: tuple[object, ...]
     match sentence:
@@ -198,9 +198,9 @@ def format_sentence(sentence: Sentence) -> bytes:
 
 
 def parse_sentence(line: bytes | str) -> Sentence | None:
-    """The sentence that a line is, or None if it is anything else: noise, damaged, or of an unknown name.
+    """The sentence in a line; None for noise, damage, or an unknown name.
 
-    Never raises, whatever the line holds. White space around the sentence (CR LF) is ignored.
+    Never raises. White space around the sentence (CR LF) is ignored.
     """
     raw = line.encode("ascii", "replace") if isinstance(line, str) else line
     match = patterns.SENTENCE.fullmatch(raw.strip())

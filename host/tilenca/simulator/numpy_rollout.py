@@ -29,7 +29,7 @@ class NumpyRollout:
             self.counted[setup.faulty[setup.faulty >= 0]] = False
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
-        """As `CompiledRollout.run`, by one thread whatever `threads` is."""
+        """As `CompiledRollout.run`, but always in one thread."""
         del threads
         starts = self.setup.starts[:-1]
         total = np.add.reduceat(self.counted, starts, dtype=np.float32)

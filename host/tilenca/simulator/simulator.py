@@ -1,8 +1,8 @@
 """Batches of grids on the schedule of real tiles or of the paper, thousands at a time.
 
-A `Simulator` owns many runs side by side as one flat list of cells. An `Engine` computes the cells: the
-firmware's own core (`FastEngine`), which is compiled together with the schedule (`rollout_library`), or
-anything else, such as tensors (`tilenca.training.float_engine`), which follows the same schedule in numpy
+A `Simulator` owns many runs side by side as one flat list of cells. An `Engine` computes the cells.
+`FastEngine` is the firmware's own core, compiled together with the schedule (`rollout_library`). Any other
+engine, such as tensors (`tilenca.training.float_engine`), follows the same schedule in numpy
 (`numpy_rollout`).
 """
 
@@ -21,7 +21,7 @@ from tilenca.simulator.rollout_library import DARK, NOBODY, CompiledRollout, Set
 
 ScheduleKind = Literal["random", "clock"]
 
-# Cell updates between two checks for anything else, such as Ctrl-C: some tenths of a second.
+# Cell updates between two checks for Ctrl-C: some tenths of a second.
 ATTENTION = 500_000
 
 
@@ -34,8 +34,8 @@ class Fault:
             sending the state it had; "away": switched off and dark then, and on again at `end`, in the seed
             state.
         tiles: (R,) which tile of its drawing, -1 for none of that run.
-        begin: number of steps that come before; 0: from before the first tile is switched on.
-        end: number of steps that come before a tile that was away is back.
+        begin: steps before the fault begins; 0: it begins before the first tile is switched on.
+        end: steps before a tile that was away is back.
 
     Raises:
         ValueError: the steps do not fit the kind.
@@ -142,7 +142,7 @@ class Simulator:
         states: (N, C) current states; not to be written to.
         shown: (N,) int8, the class each tile shows now, -1 for dark.
         alive: (N,) whether a tile is not one of `conditions.dead`.
-        setup: everything that was drawn beforehand.
+        setup: the random choices of all runs, drawn beforehand.
 
     Raises:
         ValueError: `states` or `conditions.fault` do not fit the runs, or a run has no tile that counts.
@@ -196,12 +196,12 @@ class Simulator:
 
     @property
     def updates(self) -> int:
-        """How many cell updates were computed in all."""
+        """The number of cell updates computed in all."""
         return self._rollout.updates
 
 
 def processors() -> int:
-    """How many processors this process may use."""
+    """The number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -233,7 +233,7 @@ def _draw_setup(batch: Batch, conditions: Conditions, random: np.random.Generato
 
 def _draw_alive(batch: Batch, dead: float, random: np.random.Generator) -> NDArray[np.bool_]:
     draws = random.random(len(batch.sample))
-    # At least one tile of every run stays alive, so that there is one to count.
+    # At least one tile of every run stays alive, so that one is left to count.
     luckiest = np.maximum.reduceat(draws, batch.starts)[batch.sample]
     alive: NDArray[np.bool_] = (draws >= dead) | (draws == luckiest)
     return alive

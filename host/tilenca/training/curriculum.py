@@ -1,7 +1,7 @@
-"""The drawings to train on: a task's own, the same stretched, damaged, and drawings of no class.
+"""The drawings to train on: a task's own, stretched ones, damaged ones, and drawings of no class.
 
-Every drawing has a scale, within which grids are rebuilt into each other, and a weight, its share of the
-grids. Task, recipe and one random generator decide all of it.
+A grid is rebuilt only into drawings of its own scale; a drawing's weight is its share of the grids. The task,
+the recipe and one random generator decide all of it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,7 +29,7 @@ class Curriculum:
     Attributes:
         drawings: all of them; `groups` are scales.
         weights: (S,) float64, share of the grids that a drawing gets; sums to 1.
-        whole: (S,) bool, drawings of a class without damage: with which training begins.
+        whole: (S,) bool, drawings of a class without damage; training begins with them.
     """
 
     drawings: Drawings
@@ -106,7 +106,7 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
         _Part(recipe.damaged, [(0, shape) for shape in less]),
     ]
     if recipe.unknown > 0 and UNKNOWN in task.labels:
-        # A stroke missing from a large drawing looks, larger, like one tile missing from a small one.
+        # A large drawing without a stroke looks like a small one without a tile.
         doubtful = {smallest(shape.rows) for shape in less}
         for kind in UNKNOWN_KINDS:
             found = list(_unknown(kind, scales, len(task.sources), known, doubtful, random))

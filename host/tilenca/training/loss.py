@@ -1,4 +1,4 @@
-"""The loss: how far the tiles of a batch are from showing the class of their drawing.
+"""The loss of a batch: the error of the tiles' scores, and a penalty for changes after convergence.
 
 A tile's last channels are its scores, one per class; it shows the class with the largest score. The loss has
 two terms:
@@ -16,7 +16,7 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class Goal:
-    """What the states at the end of a batch's rollouts should be.
+    """The wanted states at the end of a batch's rollouts.
 
     Attributes:
         classes: K, the number of classes.

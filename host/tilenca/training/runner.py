@@ -44,8 +44,8 @@ class Job:
         config: of the run; its labels are those of the curriculum.
         task: the drawings of the files.
         sizes: of the task.
-        device: `cpu` or `cuda`.
-        out: where checkpoints go.
+        device: of the tensors, `cpu` or `cuda`.
+        out: the folder of the checkpoints.
         resume: whether to go on from a checkpoint.
         threads: how many processors it may use; the result does not depend on it.
     """
@@ -119,7 +119,7 @@ def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
 
 
 def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[str]:
-    """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
+    """Trains every job, `at_once` of them in processes of their own; each writes a last checkpoint.
 
     Returns:
         One line for each run that failed; the others ran to their end.
@@ -222,7 +222,7 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
 
 
 def _in_process(job: Job, connection: Connection) -> None:
-    """The body of a process: progress goes through the connection, and so does a failure's text."""
+    """The body of a process: it sends its progress and a failure's text through the connection."""
     try:
         train(job, connection.send)
     except InterruptedRunError:
@@ -235,7 +235,7 @@ def _in_process(job: Job, connection: Connection) -> None:
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C waits for the end of the step, so that the checkpoint is whole; a second one does not."""
+    """Ctrl-C waits for the end of the step, so that the checkpoint is whole; a second one does not wait."""
     caught: list[int] = []
 
     def note(number: int, _frame: object) -> None:
@@ -243,7 +243,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         if number == signal.SIGINT:
             signal.signal(number, signal.default_int_handler)
 
-    # Signals that the parent process ignores (nohup) stay ignored, but for Ctrl-C.
+    # Signals that the parent process ignores (nohup) stay ignored, except Ctrl-C.
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:

@@ -1,7 +1,7 @@
 """The training loop: draw grids, run short rollouts, and pull the state of every cell towards its class.
 
-Reads top to bottom: `Trainer.step` is one optimiser step. Everything random comes from one numpy generator,
-whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
+Read it from top to bottom: `Trainer.step` is one optimiser step. All random numbers come from one numpy
+generator, whose state is part of a checkpoint, so a resumed run ends with the bytes of an uninterrupted one.
 """
 
 import math
@@ -29,7 +29,7 @@ from tilenca.training.rollout import rollout
 from tilenca.training.update_schedule import draw_schedule
 
 TILES_PER_ROLLOUT, LONGEST_ROLLOUT = 16, 2.0
-HISTORY_ROWS, HISTORY_EVERY = 200, 100  # so many rows at least, one for so many iterations at most
+HISTORY_ROWS, HISTORY_EVERY = 200, 100  # least number of rows, and most iterations per row
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Config:
     sources: tuple[dict[str, str], ...]
 
     def as_json(self) -> dict[str, Any]:
-        """Plain values, as JSON reads them back; without what does not touch the weights."""
+        """Plain values, as JSON reads them back; without settings that do not touch the weights."""
         recipe = {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self.recipe).items()}
         del recipe["validation_runs"]
         return {
@@ -61,12 +61,12 @@ class Trained:
 
     Attributes:
         config: of the run.
-        weights: the best, float32 by name, as `Model.floats` wants them.
+        weights: the best ones, float32 by name, for `Model.floats`.
         best_iteration: the iteration of these weights.
         iteration: how many iterations were done.
-        ended: whether it ended before the last one, since all targets held.
+        ended: whether it ended before the last iteration, since all targets held.
         history: (iteration, loss, agreement), means since the row before.
-        checks: (iteration, shortfall, smallest share by kind of question) of the short measurements.
+        checks: (iteration, shortfall, smallest share by kind of measurement) of the short measurements.
         done: whether there is nothing left to train.
     """
 
@@ -126,7 +126,7 @@ class Trainer:
         return self.ended or self.iteration >= self.config.recipe.iterations
 
     def recent(self) -> tuple[float, float]:
-        """Mean loss and agreement of the last iterations, to be shown."""
+        """Mean loss and agreement of the last iterations, for display."""
         if not self._since:
             return self.history[-1][1:] if self.history else (math.nan, math.nan)
         losses, agreements = zip(*self._since, strict=True)

@@ -4,8 +4,8 @@ Both schedules become the same list of updates, so that one loop trains on a mix
 
 - the paper's sampler: in every tick each tile updates with the sample's fire rate, and its neighbours receive
   the message at once;
-- the tiles' own clocks: each tile updates once per period at its own phase, its period slightly its own, and
-  its neighbours read the last message, a little after it was sent.
+- the tiles' own clocks: each tile updates once per period, with a phase and a slightly different period of
+its own, and its neighbours read its last message a little after it was sent.
 """
 
 from collections.abc import Iterator
@@ -28,9 +28,10 @@ class UpdateSchedule:
     Attributes:
         counts: (T,) int64, updates of each tick.
         updating: (E,) int32, the cell of each update, tick by tick.
-        reads: (E, 5) int32, the rows it perceives of a table of messages: own 0..N-1, as neighbours have
-            received them N..2N-1, 2N for an absent neighbour, or for a message that is lost.
-        arrives: (T, N) bool, at the end of the tick the neighbours receive the cell's message of that moment.
+        reads: (E, 5) int32, the rows that it perceives of a table of messages: 0..N-1 are the cells' own,
+            N..2N-1 are those that neighbours have received, 2N stands for an absent neighbour and for a lost
+            message.
+        arrives: (T, N) bool, whether neighbours receive the cell's current message at the end of the tick.
         starts: (B,) int64, the first cell of each of B independent samples.
     """
 
@@ -76,7 +77,7 @@ class UpdateSchedule:
 
 @dataclass(frozen=True)
 class Circumstances:
-    """What happens to B samples of N cells during a rollout.
+    """The circumstances of B samples of N cells during a rollout.
 
     Attributes:
         staggered: (B,) samples whose tiles are switched on at any time within the rollout.
@@ -105,7 +106,7 @@ def draw_schedule(
         batch: B drawings of N cells in all.
         lengths: (B,) ticks of each sample's rollout; T is the longest.
         random: the only source of chance.
-        given: what else happens to the samples.
+        given: the other circumstances of the samples.
     """
     cells, ticks = len(batch.sample), int(lengths.max())
     length = lengths[batch.sample]
@@ -205,7 +206,7 @@ def _first_received(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
 def _clocks(
     recipe: Recipe, batch: Batch, updating: NDArray[np.int64], ticks: int, random: np.random.Generator
 ) -> tuple[Flags, Flags]:
-    """(T, cells in `updating`) when those cells update, and when their message of that moment arrives."""
+    """(T, cells in `updating`) when those cells update, and when their current message arrives."""
     period = random.uniform(*recipe.ticks_per_period, len(batch.starts))[batch.sample[updating]]
     period = period * (1 + random.uniform(-recipe.drift, recipe.drift, len(updating)))
     phase = random.random(len(updating))
