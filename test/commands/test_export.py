@@ -329,3 +329,11 @@ def test_the_widest_model_of_the_largest_weights_fits() -> None:
         array.fill(127 if name.startswith("w") else -32768)
     render.check_fits(model)
     assert cost.flash_bytes(size, 1) == 15 * (17 + 8 * 255) + 16 * (17 + 8 * 120) + 7 * (17 + 8 * 127) + 5
+
+
+def test_without_a_project_it_says_how_to_make_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(paths, "PROJECT", None)
+    assert run("--model", paths.DEFAULT_MODEL) == 4
+    assert "make one: tilenca new DIR" in capsys.readouterr().err

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from support.integer_network import perceive_by_convolution
 from tilenca.base import paths
-from tilenca.base.errors import BuildError, UsageError
+from tilenca.base.errors import UsageError
 from tilenca.model.file import LARGEST, SCALES, Dimensions
 from tilenca.shapes.batch import Batch, Drawings, load_drawings
 from tilenca.training.network import TileNet, initial_arrays, perceive
 from tilenca.training.recipes import RECIPES
 from tilenca.training.rollout import rollout, rollout_by_autograd, use_threads
-from tilenca.training.rollout_kernel import library
 from tilenca.training.update_schedule import Circumstances, draw_schedule
 
 FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "digits-7x6.toml")]
@@ -276,11 +275,3 @@ def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings)
         use_threads(1)
     for other in gradients[1:]:
         assert all(torch.equal(a, b) for a, b in zip(gradients[0], other, strict=True))
-
-
-def test_a_library_that_is_missing_or_damaged_says_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(BuildError, match="not built yet; run: make setup-train"):
-        library(tmp_path / "nothing.so")
-    (tmp_path / "damaged.so").write_bytes(b"not a library")
-    with pytest.raises(BuildError, match=r"not usable .*; remove it and run: make setup-train"):
-        library(tmp_path / "damaged.so")

@@ -1,1 +1,1 @@
-"""The base of every room: errors, paths, standard streams, signals, the four sides."""
+"""The base of every room: errors, paths, the current project, standard streams, signals, the four sides."""
