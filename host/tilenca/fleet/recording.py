@@ -176,17 +176,22 @@ def read_recording(path: Path) -> Iterator[Event]:
     """
     try:
         with path.open(encoding="ascii") as file:
-            for number, line in enumerate(file, start=1):
-                try:
-                    yield parse_event(line)
-                except ValueError as error:
-                    if not line.endswith("\n"):
-                        warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
-                        return
-                    raise UsageError(
-                        f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
-                    ) from error
+            yield from _events(path, file)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}; give a file that --record wrote") from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not a recording; give a file that --record wrote") from error
+
+
+def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
+    for number, line in enumerate(lines, start=1):
+        try:
+            event = parse_event(line)
+        except ValueError as error:
+            if line.endswith("\n"):
+                raise UsageError(
+                    f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
+                ) from error
+            warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
+            return
+        yield event
