@@ -153,7 +153,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where one differs")
     parser.add_argument(
-        "--measure", nargs="+", default=[], metavar="MODEL", help="ask these models again before"
+        "--measure", nargs="+", default=[], metavar="MODEL", help="measure these models again first"
     )
     args = parser.parse_args()
     for name in args.measure:
@@ -162,7 +162,7 @@ def main() -> int:
     for path, text in differ.items():
         if args.check:
             print(
-                f"{path}: differs from what the models' metrics say; run bench.training_tables",
+                f"{path}: differs from the models' metrics; run bench.training_tables",
                 file=sys.stderr,
             )
         else:

@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_fleet_arguments(parser)
     manner = parser.add_mutually_exclusive_group()
     manner.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
-    manner.add_argument("--log", action="store_true", help="one line for whatever is new, no picture")
+    manner.add_argument("--log", action="store_true", help="one line per change, no picture")
     manner.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
     parser.add_argument(
         "--seconds",
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     storage = parser.add_mutually_exclusive_group()
     storage.add_argument(
-        "--record", type=Path, metavar="F", help="append all that is heard to F, with its time"
+        "--record", type=Path, metavar="F", help="append all received lines to F, with their times"
     )
     storage.add_argument(
         "--replay",

@@ -41,10 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[paths.DEFAULT_SHAPES],
         metavar="F",
-        help="shape files, one task; the first may say at what other sizes its drawings keep their class "
+        help="shape files, one task; the first may list other sizes at which its drawings keep their class "
         "(shapes/digits.toml)",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the model's folder")
     parser.add_argument(
         "--recipe",
         default="full",
@@ -59,10 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
     )
     parser.add_argument(
-        "--jobs", type=whole(1, 64), metavar="J", help="how many of them at once (one for each processor)"
+        "--jobs", type=whole(1, 64), metavar="J", help="seeds to train at once (one for each processor)"
     )
     parser.add_argument(
-        "--iterations", type=count, metavar="N", help="so many, instead of as many as the recipe says"
+        "--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)"
     )
     parser.add_argument(
         "--state",
@@ -82,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--validation-runs",
         type=count,
         metavar="N",
-        help="runs per drawing when it is measured, instead of as many as the recipe says",
+        help="runs per drawing in the final measurement (as many as the recipe says)",
     )
     parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
     parser.add_argument(

@@ -196,8 +196,8 @@ class Emulation:
             if self.array.time_s > limit_s:
                 slowest = min(self._standing(), key=self._updates, default=0)
                 raise TilencaError(
-                    f"shape '{self.shape.name}': tile {slowest + 1} told of {self._updates(slowest)} updates "
-                    f"in {limit_s:.1f} s, {self.settings.updates} were asked for; give --seconds to run on"
+                    f"shape '{self.shape.name}': tile {slowest + 1} reported {self._updates(slowest)} "
+                    f"updates in {limit_s:.1f} s instead of {self.settings.updates}; give --seconds to run on"
                 )
             left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
             on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))

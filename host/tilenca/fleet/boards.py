@@ -209,8 +209,8 @@ def tell_models(hellos: Mapping[str, HelloSentence]) -> None:
     for port, hello in hellos.items():
         if hello.model_id != most:
             warn(
-                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; they do "
-                f"not hear each other; flash it: tilenca flash --port {port}"
+                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; these "
+                f"tiles ignore each other; flash it: tilenca flash --port {port}"
             )
 
 

@@ -159,15 +159,15 @@ def _places_from_links(tiles: Mapping[str, int], fleet: Fleet) -> dict[int, tupl
     found = arrange(alone | neighbours(fleet))
     if found.conflicts:
         raise TilencaError(
-            f"what tiles say of their neighbours does not fit together: {found.conflicts[0]}; "
-            "check the plugs, or add --blink to say yourself where each lies"
+            f"the neighbours that tiles report contradict each other: {found.conflicts[0]}; "
+            "check the plugs, or add --blink to enter each tile's place yourself"
         )
     cells = {tile: cell for tile, cell in found.cells.items() if tile in tiles.values()}
     if len(found.groups) > 1:
         groups = "; ".join(" ".join(map(str, group)) for group in found.groups)
         warn(
-            f"{len(found.groups)} groups of tiles do not touch ({groups}): how they lie to each other is a "
-            "guess; edit the file, or add --blink to say where each lies"
+            f"{len(found.groups)} groups of tiles do not touch ({groups}): their places relative to each "
+            "other are a guess; edit the file, or add --blink to enter each tile's place"
         )
     return cells
 

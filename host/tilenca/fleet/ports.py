@@ -89,7 +89,7 @@ def serial_ports() -> list[ListPortInfo]:
             return list(comports())
         except TypeError:
             time.sleep(LOOK_AGAIN_S)
-    raise TilencaError("a board on USB does not say what it is; pull its cable and plug it in again")
+    raise TilencaError("a board on USB does not identify itself; pull its cable and plug it in again")
 
 
 def describe(info: ListPortInfo) -> Port:
