@@ -10,7 +10,8 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
-from tilenca.evaluation.metrics import Measurement, Target, validate, wilson
+from tilenca.evaluation.evaluator import validate
+from tilenca.evaluation.metrics import Measurement, Target, wilson
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
