@@ -1,9 +1,6 @@
 """A lab of emulated tiles served as ports in this process, so that a test can pull and plug their cables."""
 
-import mmap
-import os
 import queue
-import struct
 import threading
 import time
 from collections.abc import Callable
@@ -11,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tilenca.base import paths
+from support.owned_clock import OwnedClock
 from tilenca.emulator.experiment import Conditions, Emulation, firmware_settings, port_name
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.shapes.file import load_task
@@ -21,7 +18,6 @@ LIMIT_S = 600
 LONGEST_STEP_S = 0.01
 # No avrdude takes so long to react, however busy this machine is.
 STANDSTILL_S = 10.0
-CLOCK = Path(__file__).with_name("lab_clock")
 # A bootloader's answer: this byte, a sequence number, the size (two bytes), a token, the body, a checksum.
 # What the firmware says is text.
 START, ENVELOPE = b"\x1b", 6
@@ -39,16 +35,8 @@ class Lab:
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
-        clock = folder / "clock"
-        clock.write_bytes(bytes(struct.calcsize("d")))
-        with clock.open("r+b") as file:
-            self._clock = mmap.mmap(file.fileno(), 0)
-        # For the commands that use the lab.
-        self.environment = {
-            **os.environ,
-            "PYTHONPATH": f"{CLOCK}:{paths.ROOT / 'host'}",
-            "TILENCA_LAB_CLOCK": str(clock),
-        }
+        self._clock = OwnedClock(folder / "clock")
+        self.environment = self._clock.environment  # for the commands that use the lab
         self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
         self._answers: dict[ServedTile, bytes] = {}  # what each bootloader has said of its present one
         self._served: dict[int, ServedTile] = {}
@@ -81,7 +69,7 @@ class Lab:
             time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
             now_s = time.monotonic()
             self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S))
-            self._clock[:] = struct.pack("d", self.time_s)
+            self._clock.seconds = self.time_s
             while not self._orders.empty():
                 if (order := self._orders.get()) is None:
                     return
