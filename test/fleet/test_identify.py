@@ -8,7 +8,7 @@ import pytest
 
 from support.scripted_port import HELLO, Device
 from tilenca.fleet.command import ATTEMPTS, Reply, command_all
-from tilenca.fleet.identify import SILENT, STALE_S, ask_all
+from tilenca.fleet.identify import SILENT, ask_all
 from tilenca.fleet.lock import port_lock
 from tilenca.fleet.reader import PortReader
 from tilenca.protocol.board_test import BOARD_TEST
@@ -49,12 +49,23 @@ def test_each_port_has_its_answer_or_a_reason_in_the_order_asked(stack: ExitStac
 
 
 def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack) -> None:
-    asked = stack.enter_context(Device(STATE, lambda line, count: format_sentence(HELLO)))
+    said_when_asked: list[int] = []
+
+    def answer(line: bytes, count: int) -> bytes:
+        said_when_asked.append(asked.said)
+        return format_sentence(HELLO)
+
+    asked = stack.enter_context(Device(STATE, answer))
     began_s = time.monotonic()
-    answers = ask_all([asked.port], "a test")
+
+    def clock() -> float:
+        """Stands still until the tile has spoken three times."""
+        return time.monotonic() - began_s if asked.said >= 3 else 0.0
+
+    answers = ask_all([asked.port], "a test", clock=clock)
     assert answers[asked.port].hello == HELLO
     assert asked.heard[0] == ask_command()
-    assert time.monotonic() - began_s >= STALE_S, "what was said before a reset proves nothing"
+    assert said_when_asked[0] >= 3, "what was said before a reset proves nothing"
 
 
 def test_a_board_under_test_is_told_from_one_that_is_silent(stack: ExitStack) -> None:
