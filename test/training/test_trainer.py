@@ -3,10 +3,12 @@
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -416,9 +418,38 @@ def test_sizes_at_which_two_classes_are_one_drawing_are_refused(
     assert not (tmp_path / "out").exists()
 
 
-def test_a_full_disk_is_one_line_and_leaves_no_half_checkpoint(tmp_path: Path) -> None:
-    learner = trainer()
-    with pytest.raises(OSError, match="No such file"):
-        learner.save(tmp_path / "nowhere" / "checkpoint-1.pt")
-    learner.save(tmp_path / "checkpoint-1.pt")
+@contextmanager
+def files_end_at(size: int) -> Iterator[None]:
+    """No file of this process grows beyond `size` bytes, as on a disk that is nearly full."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_disk_that_fills_up_leaves_the_checkpoint_before_and_no_half_one(tmp_path: Path) -> None:
+    path, learner = tmp_path / "checkpoint-1.pt", trainer()
+    learner.save(path)
+    before = path.read_bytes()
+    learner.step()
+    with files_end_at(len(before) // 2), pytest.raises(OSError, match="File too large"):
+        learner.save(path)
+    assert path.read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["checkpoint-1.pt"]
+
+
+def test_a_full_disk_ends_training_with_one_line(
+    shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    # A device on which there is never room, where the checkpoint is written before it is renamed.
+    (out / "checkpoint-5.part").symlink_to("/dev/full")
+    assert train(shapes, out, "--iterations", "4") == 1
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "No space left on device" in said.err
+    assert len(said.err.strip().splitlines()) == 1
+    assert list(out.iterdir()) == []
