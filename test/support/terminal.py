@@ -1,0 +1,60 @@
+"""A terminal that a test looks at."""
+
+import os
+import pty
+import re
+import sys
+import termios
+import threading
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import pytest
+
+LIMIT_S = 30
+_ESCAPE = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
+
+
+class Screen:
+    """Collects all that is written on a pseudo-terminal."""
+
+    def __init__(self, master: int) -> None:
+        self._master = master
+        self._written = b""
+        self._thread = threading.Thread(target=self._collect, daemon=True)
+        self._thread.start()
+
+    def _collect(self) -> None:
+        with suppress(OSError):  # the other end is closed
+            while data := os.read(self._master, 4096):
+                self._written += data
+
+    def close(self) -> None:
+        """Waits for the rest."""
+        self._thread.join(LIMIT_S)
+        assert not self._thread.is_alive(), "somebody has the terminal open"
+        os.close(self._master)
+
+    @property
+    def text(self) -> str:
+        """What was written, without colours and movements of the cursor."""
+        return _ESCAPE.sub("", self._written.decode())
+
+
+@contextmanager
+def stderr_on_terminal(monkeypatch: pytest.MonkeyPatch, width: int = 100) -> Iterator[Screen]:
+    """The standard error of this process is a terminal while the block runs; then its text is complete."""
+    master, slave = pty.openpty()
+    tty.setraw(slave)
+    termios.tcsetwinsize(slave, (24, width))
+    for name in ("COLUMNS", "LINES", "NO_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    screen = Screen(master)
+    try:
+        with os.fdopen(slave, "w") as stream, monkeypatch.context() as patch:
+            patch.setattr(sys, "stderr", stream)
+            yield screen
+    finally:
+        screen.close()
