@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from support.alone import alone
 from tilenca.base import paths
 
 PIO = Path(sys.executable).with_name("pio")
@@ -37,5 +38,6 @@ def test_a_clone_may_lie_in_a_folder_with_a_blank_in_its_name(
 @pytest.mark.skipif(not PIO.exists(), reason="PlatformIO is not installed; run `make setup`")
 def test_the_core_builds_for_this_machine_without_its_tests() -> None:
     command = [str(PIO), "run", "-s", "-d", str(paths.ROOT), "-e", "native"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    with alone("pio"):
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
