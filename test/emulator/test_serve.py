@@ -142,7 +142,7 @@ def test_serving_needs_a_directory_of_its_own() -> None:
 
 
 class Flow:
-    """Lets a server's clock flow while the block runs: real milliseconds, and leaps where the test wants one."""
+    """Lets a server's clock flow while the block runs, and leap where the test wants it."""
 
     def __init__(self, clock: OwnedClock) -> None:
         self._clock = clock

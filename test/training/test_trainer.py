@@ -434,7 +434,7 @@ def test_a_disk_that_fills_up_leaves_the_checkpoint_before_and_no_half_one(tmp_p
     learner.save(path)
     before = path.read_bytes()
     learner.step()
-    with files_end_at(len(before) // 2), pytest.raises(OSError, match="File too large"):
+    with files_end_at(len(before) // 2), pytest.raises(TilencaError, match="File too large"):
         learner.save(path)
     assert path.read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["checkpoint-1.pt"]
@@ -450,6 +450,7 @@ def test_a_full_disk_ends_training_with_one_line(
     assert train(shapes, out, "--iterations", "4") == 1
     said = capsys.readouterr()
     assert said.out == ""
-    assert "No space left on device" in said.err
-    assert len(said.err.strip().splitlines()) == 1
+    full = f"seed 5: {out}/checkpoint-5.pt: No space left on device; make room there, or give another --out"
+    assert said.err.splitlines().count(full) == 1
+    assert "Traceback" not in said.err
     assert list(out.iterdir()) == []
