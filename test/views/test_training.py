@@ -32,6 +32,7 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
 def test_a_rate_is_that_of_this_run_not_of_the_one_it_goes_on_from(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    seconds = 0.0
     clock = SimpleNamespace(monotonic=lambda: seconds)
     monkeypatch.setattr(training, "time", clock)
     with show_training([5], 1000) as tell:
