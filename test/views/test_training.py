@@ -11,17 +11,26 @@ from tilenca.views import training
 from tilenca.views.training import LINES, show_training
 
 
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """The view's clock: it stands still but for what is added to its `seconds`."""
+    owned = SimpleNamespace(seconds=100.0, monotonic=lambda: owned.seconds)
+    monkeypatch.setattr(training, "time", owned)
+    return owned
+
+
 def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with stderr_on_terminal(monkeypatch, width=140) as screen, show_training([5, 6], 400) as tell:
         tell(Progress(5, 100, 0.25, 0.5, None))
+        clock.seconds += 2.0
         tell(Progress(5, 200, 0.125, 0.75, (3, 8, 0.0625)))
     lines = [line for line in re.split(r"[\r\n]+", screen.text) if "seed" in line]
     last = {line.split()[1]: line for line in lines}
     assert last.keys() == {"5", "6"}
     assert "200/400" in last["5"]
-    assert "loss 0.1250  agree 0.750" in last["5"]
+    assert "loss 0.1250  agree 0.750  50/s" in last["5"]
     assert "targets 3/8, short by 0.062" in last["5"]
     assert "0/400" in last["6"]
     assert "loss" not in last["6"], "it has not begun"
@@ -30,15 +39,11 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
 
 
 def test_a_rate_is_that_of_this_run_not_of_the_one_it_goes_on_from(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    clock: SimpleNamespace, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    seconds = 0.0
-    clock = SimpleNamespace(monotonic=lambda: seconds)
-    monkeypatch.setattr(training, "time", clock)
     with show_training([5], 1000) as tell:
-        seconds = 10.0
         tell(Progress(5, 600, 1.0, 0.0, None))
-        seconds = 14.0
+        clock.seconds += 4.0
         tell(Progress(5, 800, 1.0, 0.0, None))
     assert capsys.readouterr().err.splitlines()[-1].endswith(" 50/s")
 
