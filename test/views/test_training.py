@@ -1,7 +1,6 @@
 """How training looks, on a terminal and elsewhere."""
 
 import re
-from types import SimpleNamespace
 
 import pytest
 
@@ -11,16 +10,26 @@ from tilenca.views import training
 from tilenca.views.training import LINES, show_training
 
 
+class Clock:
+    """Stands still but for what is added to it."""
+
+    def __init__(self) -> None:
+        self.seconds = 100.0
+
+    def monotonic(self) -> float:
+        return self.seconds
+
+
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """The view's clock: it stands still but for what is added to its `seconds`."""
-    owned = SimpleNamespace(seconds=100.0, monotonic=lambda: owned.seconds)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """The clock that the view goes by."""
+    owned = Clock()
     monkeypatch.setattr(training, "time", owned)
     return owned
 
 
 def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
-    clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    clock: Clock, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with stderr_on_terminal(monkeypatch, width=140) as screen, show_training([5, 6], 400) as tell:
         tell(Progress(5, 100, 0.25, 0.5, None))
@@ -39,7 +48,7 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
 
 
 def test_a_rate_is_that_of_this_run_not_of_the_one_it_goes_on_from(
-    clock: SimpleNamespace, capsys: pytest.CaptureFixture[str]
+    clock: Clock, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with show_training([5], 1000) as tell:
         tell(Progress(5, 600, 1.0, 0.0, None))
