@@ -6,8 +6,9 @@ import tempfile
 
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
+from support.terminal import pty
 
-__all__ = ["arduino", "arduino_core", "avr", "firmware", "talk"]  # fixtures for every room
+__all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
 
 
 def pytest_configure() -> None:

@@ -1,7 +1,6 @@
 """A terminal that a test looks at."""
 
 import os
-import pty
 import re
 import sys
 import termios
@@ -9,11 +8,21 @@ import threading
 import tty
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pty import openpty
 
 import pytest
 
 LIMIT_S = 30
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
+
+
+@pytest.fixture
+def pty() -> Iterator[str]:
+    """A port of which nobody has the other end."""
+    master, slave = openpty()
+    yield os.ttyname(slave)
+    os.close(master)
+    os.close(slave)
 
 
 class Screen:
@@ -45,7 +54,7 @@ class Screen:
 @contextmanager
 def stderr_on_terminal(monkeypatch: pytest.MonkeyPatch, width: int = 100) -> Iterator[Screen]:
     """The standard error of this process is a terminal while the block runs; then its text is complete."""
-    master, slave = pty.openpty()
+    master, slave = openpty()
     tty.setraw(slave)
     termios.tcsetwinsize(slave, (24, width))
     for name in ("COLUMNS", "LINES", "NO_COLOR"):
