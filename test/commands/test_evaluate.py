@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from tilenca import cli
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.evaluation.metrics import settle_times
+from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.file import load_task
 from tilenca.simulator import core_library
 from tilenca.simulator.engine import States
-from tilenca.simulator.simulator import Conditions, Course, Simulator
+from tilenca.simulator.simulator import Conditions, Simulator, Trajectory
 
 needs_core = pytest.mark.skipif(
     not core_library.LIBRARY.exists(), reason="run `make setup` to compile the core"
@@ -112,7 +112,7 @@ def test_a_lost_message_reads_as_the_last_one_or_as_zero() -> None:
 
 def test_dead_tiles_never_update_are_never_heard_and_are_not_asked() -> None:
     simulator = gossip("0", Conditions("clock", dead=0.4))
-    course = simulator.run(15)
+    trajectory = simulator.run(15)
     dead = ~simulator.alive
     assert 0.3 < dead.mean() < 0.5
     assert not simulator.states[dead].any()
@@ -120,7 +120,7 @@ def test_dead_tiles_never_update_are_never_heard_and_are_not_asked() -> None:
     assert lonely.any()
     assert not heard_of(simulator)[lonely].any()
     # Every living tile of this engine shows class 0, which is right here; dead ones show nothing.
-    assert (course.right[-1] == 1.0).all()
+    assert (trajectory.right[-1] == 1.0).all()
 
 
 def test_a_run_with_every_tile_dead_keeps_one_to_ask() -> None:
@@ -139,20 +139,20 @@ def test_a_tile_shows_nothing_before_its_first_update() -> None:
     simulator = Simulator(
         Sleeper(), drawings, np.array([zero]), Conditions("random"), np.random.default_rng(1)
     )
-    course = simulator.run(20, record=True)
-    assert course.shown is not None
+    trajectory = simulator.run(20, record=True)
+    assert trajectory.shown is not None
     # A random half updates at a time: some have not yet in the first step, and are dark.
-    dark = course.shown[0] == -1
+    dark = trajectory.shown[0] == -1
     assert 0 < dark.sum() < len(dark)
-    assert course.right[0] == pytest.approx(1 - dark.mean())
-    assert not course.shown[-1].any()
-    assert course.right[-1].tolist() == [1.0]
+    assert trajectory.right[0] == pytest.approx(1 - dark.mean())
+    assert not trajectory.shown[-1].any()
+    assert trajectory.right[-1].tolist() == [1.0]
 
 
 def test_settled_is_the_first_step_from_which_all_stay_right() -> None:
     right = np.array([[0, 1, 1, 0.5], [1, 1, 0, 1], [1, 1, 1, 0.9]], np.float32)
-    assert Course(right).settled.tolist() == [2, 1, 3, np.inf]
-    assert settle_times(Course(right).settled) == {"median": 2.0, "p95": None}
+    assert Trajectory(right).converged_at.tolist() == [2, 1, 3, np.inf]
+    assert convergence_times(Trajectory(right).converged_at) == {"median": 2.0, "p95": None}
 
 
 def evaluate(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
@@ -296,8 +296,8 @@ def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> N
         load_drawings([shapes, shapes])
 
 
-def test_the_exam_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["evaluate", "--exam", "--runs", "1", "--seed", "3"]
+def test_the_suite_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "--suite", "--runs", "1", "--seed", "3"]
     assert cli.main([*words, "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert cli.main(words) == 0
@@ -311,9 +311,17 @@ def test_the_exam_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFix
     "words",
     [["--size", "9x7"], ["--engine", "float"], ["--dead", "0.1"], ["--loss", "0.1"], ["--steps", "9"]],
 )
-def test_the_exam_sets_its_own_conditions(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["evaluate", "--exam", *words]) == 2
+def test_the_suite_sets_its_own_conditions(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["evaluate", "--suite", *words]) == 2
     assert f"leave {words[0]} out" in capsys.readouterr().err
+
+
+def test_exam_is_another_name_of_suite_and_not_in_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["evaluate", "--exam", "--loss", "0.1"]) == 2
+    assert "--suite sets its own conditions" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        cli.main(["evaluate", "--help"])
+    assert "exam " not in capsys.readouterr().out
 
 
 def test_drawings_are_stretched_to_the_size_asked_for(capsys: pytest.CaptureFixture[str]) -> None:

@@ -107,7 +107,7 @@ def test_the_compiled_files_hold_exactly_the_model(
     lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
     for layer, line in zip((1, 2, 3), lines[:3], strict=True):
         values = np.array(line.split(), dtype=np.int64)
-        narrow = np.array([part.narrow for part in packing.passes(model, layer)])
+        narrow = np.array([part.is_16_bit for part in packing.blocks(model, layer)])
         expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
         np.testing.assert_array_equal(values, np.concatenate(expected))
     looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]
@@ -129,7 +129,7 @@ def test_report_as_json(
         "files": files,
         "flash_bytes": weights + 3 * 5,
         "model_id": f"{model.model_id:04X}",
-        "narrow_outputs": [0, 0, 0],
+        "outputs_in_16_bits": [0, 0, 0],
         "written": files,
     }
     assert run("--model", model_directory, "--out", firmware, "--json") == 0
@@ -240,12 +240,12 @@ def test_a_directory_that_is_no_model_is_a_usage_error(
     assert "model.json" in capsys.readouterr().err
 
 
-def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> packing.Pass:
+def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> packing.Block:
     """The only pass of a layer with these weights."""
     model = random_network(Dimensions(1, 1, 1), 1)
     integer = dict(model.integer)
     integer[f"w{layer}"], integer[f"b{layer}"] = np.array(weights, np.int8), np.array(biases, np.int16)
-    (found,) = packing.passes(replace(model, integer=integer), layer)
+    (found,) = packing.blocks(replace(model, integer=integer), layer)
     return found
 
 
@@ -276,8 +276,8 @@ def test_the_bounds_of_a_pass_are_those_of_its_outermost_outputs() -> None:
 def test_16_bits_are_used_where_no_input_can_make_them_wrap(
     weights: list[int], bias: int, layer: int, narrow: bool
 ) -> None:
-    assert one_layer([weights], [bias], layer).narrow is narrow
-    assert one_layer([[0, 0], weights], [0, bias], layer).narrow is narrow, "the worst output decides"
+    assert one_layer([weights], [bias], layer).is_16_bit is narrow
+    assert one_layer([[0, 0], weights], [0, bias], layer).is_16_bit is narrow, "the worst output decides"
 
 
 def test_the_exporter_says_which_sums_have_16_bits(
@@ -291,7 +291,7 @@ def test_the_exporter_says_which_sums_have_16_bits(
     assert run("--model", tmp_path / "small", "--out", firmware) == 0
     assert "sums of 16 bits: layer 2 0..5, layer 3 0..4; of 24 bits: all others\n" in capsys.readouterr().out
     assert run("--model", tmp_path / "small", "--out", firmware, "--json") == 0
-    assert json.loads(capsys.readouterr().out)["narrow_outputs"] == [0, 6, 5]
+    assert json.loads(capsys.readouterr().out)["outputs_in_16_bits"] == [0, 6, 5]
 
 
 def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from itertools import permutations
 import pytest
 
 from tilenca.base import paths
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 from tilenca.emulator import Array
 from tilenca.emulator.experiment import cables
 from tilenca.protocol.line_reader import LineReader
@@ -87,7 +87,7 @@ def steps(old: set[Cell], new: set[Cell], draw: random.Random) -> list[tuple[boo
 
 
 def around(cell: Cell) -> list[Cell]:
-    return [(cell[0] + down, cell[1] + right) for down, right in STEPS]
+    return [(cell[0] + down, cell[1] + right) for down, right in OFFSETS]
 
 
 def placed(shape: Shape) -> set[Cell]:

@@ -76,8 +76,8 @@ def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(
         rounding = packing.ROUNDING if layer < 3 else 0
         biases[:] = np.clip(np.where(upward, 32767 - most, -32768 - least) - rounding, -32768, 32767)
     for layer in (1, 2, 3):
-        parts = packing.passes(model, layer)
-        assert all(part.narrow for part in parts)
+        parts = packing.blocks(model, layer)
+        assert all(part.is_16_bit for part in parts)
         assert max(part.most for part in parts) == 32767
         assert min(part.least for part in parts) == -32768
     tile = run(model, tmp_path, 1000)
@@ -93,10 +93,10 @@ def test_passes_of_both_kinds_take_turns(first: int, tmp_path: Path) -> None:
     """Within a layer, and within a call."""
     model = random_network(Dimensions(21, 40, 40), 127, 100)
     for layer in (1, 2, 3):
-        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // packing.PASS_OUTPUTS % 2 == first
+        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // packing.BLOCK_OUTPUTS % 2 == first
         model.integer[f"w{layer}"][is_narrow] //= 64
-        kinds = [part.narrow for part in packing.passes(model, layer)]
-        assert kinds == list(is_narrow[:: packing.PASS_OUTPUTS])
+        kinds = [part.is_16_bit for part in packing.blocks(model, layer)]
+        assert kinds == list(is_narrow[:: packing.BLOCK_OUTPUTS])
     tile = run(model, tmp_path, 1000)
     assert tile.integer("wide_passes") > 0
     assert tile.integer("differences") == 0
@@ -148,18 +148,18 @@ def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
 @pytest.mark.parametrize("width", kernel.WIDTHS)
 def test_cycles_of_a_forward_pass_without_a_zero(width: int) -> None:
     size = Dimensions(21, width, width)
-    found = kernel.measure(kernel.any_model(size, narrow=False), kernel.dense(size))
+    found = kernel.measure(kernel.any_model(size, is_16_bit=False), kernel.dense(size))
     assert found.assembly <= 9.7 * cost.macs(size)
-    found = kernel.measure(kernel.any_model(size, narrow=True), kernel.dense(size))
+    found = kernel.measure(kernel.any_model(size, is_16_bit=True), kernel.dense(size))
     assert found.assembly <= 8.2 * cost.macs(size)
-    half = kernel.any_model(size, narrow=True, zeros=True)
+    half = kernel.any_model(size, is_16_bit=True, zeros=True)
     found = kernel.measure(half, kernel.dense(size, zeros=True))
     assert found.assembly <= 5 * cost.macs(size)
 
 
-@pytest.mark.parametrize("steps", [kernel.STEPS_YOUNG, kernel.STEPS_SETTLED])
+@pytest.mark.parametrize("steps", [kernel.STEPS_YOUNG, kernel.STEPS_CONVERGED])
 @pytest.mark.parametrize("name", ["digits", "paper"])
 def test_cycles_of_a_forward_pass_in_a_tissue(name: str, steps: int) -> None:
     model = load_model(ROOT / "models" / name)
-    found = kernel.measure(model, kernel.tissue(model, steps))
+    found = kernel.measure(model, kernel.trained_cells(model, steps))
     assert found.assembly <= 6.3 * cost.macs(model.dimensions)

@@ -10,8 +10,8 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
-from tilenca.evaluation.metrics import Row, Target, validate, wilson
-from tilenca.evaluation.suites import Aims, set_exam
+from tilenca.evaluation.metrics import Measurement, Target, validate, wilson
+from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 from tilenca.shapes.cells import connected
@@ -30,10 +30,10 @@ def digits(model: Model) -> Drawings:
     return load_drawings([paths.DEFAULT_SHAPES], labels=model.labels)
 
 
-def row(share: float, target: Target | None = None, worst: float | None = None) -> Row:
+def row(share: float, target: Target | None = None, worst: float | None = None) -> Measurement:
     settle = {"median": 7.0, "p95": None}
     aim = (None, 0.0) if target is None else (target.share, target.floor)
-    return Row(
+    return Measurement(
         "drawings",
         "some",
         60,
@@ -75,10 +75,10 @@ def test_running_tiles_rebuilt_into_another_digit_name_it(
     assert callable(change)
     changed = change(FastEngine(model), digits, 1, 60, 60, np.random.default_rng(1))
     assert changed is not None
-    course, new = changed
+    trajectory, new = changed
     assert len(new) == 90
     assert (np.bincount(new) == 9).all()
-    assert course.agreed[-1].mean() > 0.95
+    assert trajectory.agreed[-1].mean() > 0.95
 
 
 def test_one_class_alone_has_nothing_to_be_rebuilt_into(model: Model, digits: Drawings) -> None:
@@ -104,18 +104,20 @@ def test_on_the_way_from_one_drawing_to_another_tiles_hang_together(digits: Draw
 
 def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    exam = set_exam(replace(task, labels=model.labels), sizes, model.labels, Aims(10, True, True), 1)
+    suite = make_suite(replace(task, labels=model.labels), sizes, model.labels, Aims(10, True, True), 1)
     said: list[str] = []
-    metrics = validate(FastEngine(model), exam, 2, 1, said.append)
-    assert metrics == validate(FastEngine(model), exam, 2, 1)
+    metrics = validate(FastEngine(model), suite, 2, 1, said.append)
+    assert metrics == validate(FastEngine(model), suite, 2, 1)
     assert metrics == json.loads(json.dumps(metrics))
     assert len(said) == len(metrics["rows"])
     assert all(0 <= row["low"] <= row["share"] <= row["high"] <= 1 for row in metrics["rows"])
-    model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
-    card = render_card(model, {**metrics, "weights_cut": 0, "iterations": 10, "kept": 8, "ended_early": True})
+    model = replace(model, metadata={"shapes": ["shapes/digits.toml"], **model.metadata})
+    card = render_card(
+        model, {**metrics, "weights_cut": 0, "iterations": 10, "best_iteration": 8, "ended_early": True}
+    )
     for line in metrics["rows"]:
         assert line["name"] in card
-    assert model.made["command"] in card
+    assert model.metadata["command"] in card
     assert "since all targets held" in card
 
 
@@ -128,8 +130,8 @@ def a_result(model: Model, shortfall: float) -> Result:
         "targets_held": "0 of 1",
         "shortfall": shortfall,
     }
-    metrics |= {"weights_cut": 0, "iterations": 1, "kept": 1, "ended_early": False}
-    model = replace(model, made={"shapes": ["shapes/digits.toml"], **model.made})
+    metrics |= {"weights_cut": 0, "iterations": 1, "best_iteration": 1, "ended_early": False}
+    model = replace(model, metadata={"shapes": ["shapes/digits.toml"], **model.metadata})
     return Result(
         model,
         metrics,
@@ -154,7 +156,7 @@ def test_a_worse_model_does_not_replace_a_better_one(
 
 def test_a_model_of_other_drawings_is_replaced_whatever_it_scored(model: Model, tmp_path: Path) -> None:
     keep(tmp_path, a_result(model, 0.1))
-    others = replace(model, made={**model.made, "sources": [{"file": "other.toml", "sha256": ""}]})
+    others = replace(model, metadata={**model.metadata, "sources": [{"file": "other.toml", "sha256": ""}]})
     assert keep(tmp_path, a_result(others, 0.2)) == tmp_path
 
 

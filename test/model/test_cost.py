@@ -30,7 +30,7 @@ def plan(*arguments: str) -> int:
 def test_flash_is_what_the_exported_arrays_take() -> None:
     model = load_model(paths.DEFAULT_MODEL)
     said = cost.flash_bytes(model.dimensions, len(model.labels))
-    streams = sum(len(part.stream) for layer in (1, 2, 3) for part in packing.passes(model, layer))
+    streams = sum(len(part.stream) for layer in (1, 2, 3) for part in packing.blocks(model, layer))
     assert said == streams + cost.LOOK_BYTES * len(model.labels)
     symbols = {symbol.name: symbol.size for symbol in Firmware(paths.FIRMWARE_ELF).flash_data()}
     assert sum(size for name, size in symbols.items() if "model" in name and "kModel" not in name) == said

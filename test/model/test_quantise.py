@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from support.integer_network import IntegerEngine, IntegerNet
 from tilenca.base import paths
-from tilenca.model.file import LARGEST, STEPS, Dimensions, Model, load_model
+from tilenca.model.file import LARGEST, SCALES, Dimensions, Model, load_model
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import load_drawings
 from tilenca.simulator import core_library
@@ -28,7 +28,9 @@ def random_model(dimensions: Dimensions, seed: int, extreme: bool) -> Model:
     floats = {}
     for name, shape in dimensions.shapes().items():
         size = random.uniform(-1, 1, shape)
-        floats[name] = ((np.sign(size) if extreme else size) * LARGEST[name] / STEPS[name]).astype(np.float32)
+        floats[name] = ((np.sign(size) if extreme else size) * LARGEST[name] / SCALES[name]).astype(
+            np.float32
+        )
     return quantise(dimensions, ("0", "1"), floats, {})[0]
 
 
@@ -107,11 +109,11 @@ def test_core_and_pytorch_agree_over_long_lives_of_the_shipped_model(schedule: s
     conditions = Conditions("random" if schedule == "random" else "clock", loss=0.1)
     chosen = np.arange(len(drawings))
     engines = FastEngine(model), IntegerEngine(model), FloatEngine(model)
-    lives = [Simulator(engine, drawings, chosen, conditions, np.random.default_rng(8)) for engine in engines]
+    runs = [Simulator(engine, drawings, chosen, conditions, np.random.default_rng(8)) for engine in engines]
     for part in range(10):
-        for life in lives:
-            life.run(25)
-        fast, integer, trained = (life.states for life in lives)
+        for run in runs:
+            run.run(25)
+        fast, integer, trained = (run.states for run in runs)
         assert np.array_equal(fast, integer), f"step {25 * part + 25}"
         # What training computed in float32 is the same number in another unit.
         assert np.array_equal(fast, trained * 128), f"step {25 * part + 25}"

@@ -1,4 +1,4 @@
-"""The table [sizes] of a shape file, and the curriculum and exam that come of it."""
+"""The table [sizes] of a shape file, and the curriculum and suite that come of it."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.evaluation.suites import Aims, set_exam
+from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.shapes import batch, variants
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN, Task, load_task
@@ -88,10 +88,8 @@ def test_the_curriculum_has_every_kind_in_its_share_and_nothing_held_out() -> No
     assert weights[damaged].sum() == pytest.approx(FULL.damaged)
     assert {shape.label for shape in shapes} == {*"0123456789", UNKNOWN}
     assert not any(variants.held_out(shape.rows) for shape, none in zip(shapes, unknown, strict=True) if none)
-    asked = set_exam(task, sizes, task.labels, aims_of(FULL), seed=1)
-    new = {
-        s.rows for paper in (*asked.sizes, *asked.unknown) if paper.held_out for s in paper.drawings.shapes
-    }
+    asked = make_suite(task, sizes, task.labels, aims_of(FULL), seed=1)
+    new = {s.rows for case in (*asked.sizes, *asked.unknown) if case.held_out for s in case.drawings.shapes}
     assert new.isdisjoint(shape.rows for shape in shapes)
     drawn = {(len(shape.rows), len(shape.rows[0])) for shape in shapes if shape.label == "8"}
     assert (7, 6) in drawn
@@ -120,10 +118,10 @@ def test_a_state_without_room_for_a_dash_gets_none() -> None:
 def test_the_exam_asks_for_what_training_never_saw() -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
     labels = (*task.labels, UNKNOWN)
-    exam = set_exam(task, sizes, labels, Aims(10.0, True, True), seed=1)
-    assert [paper.name for paper in exam.drawn] == ["digits.toml", "digits-3x3.toml"]
-    held_out = [paper for paper in exam.sizes if paper.held_out]
-    assert [paper.name.split(",")[0] for paper in held_out] == [
+    suite = make_suite(task, sizes, labels, Aims(10.0, True, True), seed=1)
+    assert [case.name for case in suite.drawn] == ["digits.toml", "digits-3x3.toml"]
+    held_out = [case for case in suite.sizes if case.held_out]
+    assert [case.name.split(",")[0] for case in held_out] == [
         "8x5",
         "9x7",
         "11x9",
@@ -131,12 +129,12 @@ def test_the_exam_asks_for_what_training_never_saw() -> None:
         "14x12",
         "20x16",
     ]
-    assert [paper.steps for paper in held_out] == [60, 100, 100, 100, 100, 200]
-    assert len(exam.unknown) == 3
-    for paper in exam.unknown:
-        assert all(variants.held_out(shape.rows) for shape in paper.drawings.shapes)
-    assert [paper.name for paper in exam.larger] == ["7x6", "12x10"]
-    assert set_exam(task, sizes, task.labels, Aims(), seed=1).unknown == (), (
+    assert [case.steps for case in held_out] == [60, 100, 100, 100, 100, 200]
+    assert len(suite.unknown) == 3
+    for case in suite.unknown:
+        assert all(variants.held_out(shape.rows) for shape in case.drawings.shapes)
+    assert [case.name for case in suite.larger] == ["7x6", "12x10"]
+    assert make_suite(task, sizes, task.labels, Aims(), seed=1).unknown == (), (
         "a model that knows no dash is not asked"
     )
 
@@ -144,17 +142,17 @@ def test_the_exam_asks_for_what_training_never_saw() -> None:
 def test_the_papers_recipe_trains_on_one_size_and_is_asked_about_others() -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], RECIPES["paper"].stretch, 20)
     assert [source["file"] for source in task.sources] == ["digits.toml"]
-    exam = set_exam(task, sizes, task.labels, aims_of(RECIPES["paper"]), seed=1)
-    asked = [paper.name for paper in exam.sizes]
+    suite = make_suite(task, sizes, task.labels, aims_of(RECIPES["paper"]), seed=1)
+    asked = [case.name for case in suite.sizes]
     assert asked[:2] == ["digits-3x3.toml, never trained on", "7x6, never trained on"]
-    assert not any(paper.aimed for paper in exam.sizes)
+    assert not any(case.aimed for case in suite.sizes)
 
 
 def test_a_model_is_measured_against_what_it_was_trained_for_only() -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    exam = set_exam(task, sizes, task.labels, Aims(stretch=1.5, damaged=False), seed=1)
-    aimed = {paper.name.split(",")[0]: paper.aimed for paper in exam.sizes if paper.held_out}
+    suite = make_suite(task, sizes, task.labels, Aims(stretch=1.5, damaged=False), seed=1)
+    aimed = {case.name.split(",")[0]: case.aimed for case in suite.sizes if case.held_out}
     assert aimed == {"8x5": True, "9x7": True, "11x9": False, "13x10": False, "14x12": False, "20x16": False}
-    assert exam.damaged is not None
-    assert not exam.damaged.aimed
-    assert [paper.name for paper in exam.larger] == ["7x6"]
+    assert suite.damaged is not None
+    assert not suite.damaged.aimed
+    assert [case.name for case in suite.larger] == ["7x6"]

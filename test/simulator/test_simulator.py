@@ -14,7 +14,7 @@ from tilenca.model.file import Dimensions, Model
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
 from tilenca.simulator.engine import ExactEngine, FastEngine, States
-from tilenca.simulator.simulator import Conditions, Course, Fault, Simulator
+from tilenca.simulator.simulator import Conditions, Fault, Simulator, Trajectory
 
 CLASSES = 3
 CHANNELS = 6
@@ -75,24 +75,26 @@ def simulator(
     return Simulator(engine(MODEL), drawings, chosen, conditions, random, fault=fault, threads=threads)
 
 
-def check_against_the_slow_one(life: Simulator, steps: int) -> None:
+def check_against_the_slow_one(rollout: Simulator, steps: int) -> None:
     engine = PlainEngine(MODEL)
 
     def update(state: NDArray[Any], inputs: NDArray[Any]) -> NDArray[Any]:
         return reference(MODEL, state, inputs).astype(np.int16)
 
-    start = engine.seed(life.cells)
+    start = engine.seed(rollout.cells)
     slow = [
-        SlowRun(life.setup, run, start, start[0], update, engine.message, CLASSES)
-        for run in range(len(life.batch.starts))
+        SlowRun(rollout.setup, run, start, start[0], update, engine.message, CLASSES)
+        for run in range(len(rollout.batch.starts))
     ]
-    course = life.run(steps, record=True)
-    assert course.shown is not None
+    trajectory = rollout.run(steps, record=True)
+    assert trajectory.shown is not None
     for step in range(steps):
         right = [run.step() for run in slow]
-        assert course.shown[step].tolist() == [shown for run in slow for shown in run.shown], f"step {step}"
-        np.testing.assert_allclose(course.right[step], right, rtol=1e-6)
-    assert np.array_equal(life.states, np.concatenate([run.states for run in slow]))
+        assert trajectory.shown[step].tolist() == [shown for run in slow for shown in run.shown], (
+            f"step {step}"
+        )
+        np.testing.assert_allclose(trajectory.right[step], right, rtol=1e-6)
+    assert np.array_equal(rollout.states, np.concatenate([run.states for run in slow]))
 
 
 CONDITIONS = [
@@ -148,12 +150,12 @@ def test_a_run_of_more_tiles_than_a_number_has_bits_is_the_slow_simulator_too(sc
 
 
 def same(one: Simulator, other: Simulator, steps: int) -> bool:
-    """Whether two simulators live the same life."""
-    courses = [life.run(steps, record=True) for life in (one, other)]
+    """Whether two simulators have the same trajectories."""
+    trajectories = [rollout.run(steps, record=True) for rollout in (one, other)]
     return (
         np.array_equal(one.states, other.states)
-        and np.array_equal(courses[0].right, courses[1].right)
-        and np.array_equal(courses[0].shown, courses[1].shown)  # type: ignore[arg-type]
+        and np.array_equal(trajectories[0].right, trajectories[1].right)
+        and np.array_equal(trajectories[0].shown, trajectories[1].shown)  # type: ignore[arg-type]
         and one.updates == other.updates
     )
 
@@ -162,10 +164,10 @@ def same(one: Simulator, other: Simulator, steps: int) -> bool:
 def test_the_result_does_not_depend_on_the_number_of_threads(schedule: Any) -> None:
     conditions = Conditions(schedule, loss=0.1)
     fault = Fault("away", np.zeros(3 * 700, np.int64), begin=2, end=4)
-    lives = [simulator(conditions, fault, runs=700, threads=threads) for threads in (1, 2, 5)]
-    assert lives[0].cells > 8192, "several groups, or there is nothing to share"
-    assert same(lives[0], lives[1], 12)
-    assert np.array_equal(lives[2].run(12).right, simulator(conditions, fault, runs=700).run(12).right)
+    rollouts = [simulator(conditions, fault, runs=700, threads=threads) for threads in (1, 2, 5)]
+    assert rollouts[0].cells > 8192, "several groups, or there is nothing to share"
+    assert same(rollouts[0], rollouts[1], 12)
+    assert np.array_equal(rollouts[2].run(12).right, simulator(conditions, fault, runs=700).run(12).right)
 
 
 def test_any_engine_follows_the_same_schedule_round_by_round() -> None:
@@ -196,23 +198,23 @@ def test_a_life_goes_on_where_it_stopped() -> None:
 
 def test_ten_thousand_tiles_live_in_one_array() -> None:
     conditions = Conditions("clock", loss=0.05)
-    lives = [
+    rollouts = [
         simulator(conditions, runs=1, drawings=block(100, 100), engine=engine)
         for engine in (FastEngine, PlainEngine)
     ]
-    assert lives[0].cells == 10_000
-    assert same(lives[0], lives[1], 5)
+    assert rollouts[0].cells == 10_000
+    assert same(rollouts[0], rollouts[1], 5)
     # Drift apart, every tile updates once a step; those switched on first are ten steps ahead.
-    assert 10_000 * 5 < lives[0].updates < 10_000 * 15
+    assert 10_000 * 5 < rollouts[0].updates < 10_000 * 15
 
 
 def test_updates_are_counted() -> None:
-    life = simulator(Conditions("clock", boot=0.0, drift=0.0))
-    life.run(10)
-    assert life.updates == life.cells * 10
+    rollout = simulator(Conditions("clock", boot=0.0, drift=0.0))
+    rollout.run(10)
+    assert rollout.updates == rollout.cells * 10
     stuck = simulator(Conditions("clock", boot=0.0, drift=0.0), Fault("stuck", TILES, begin=4))
     stuck.run(10)
-    assert stuck.updates == life.updates - 5 * 6  # five runs have a stuck tile
+    assert stuck.updates == rollout.updates - 5 * 6  # five runs have a stuck tile
 
 
 def test_states_to_start_from_are_copied_and_used() -> None:
@@ -221,62 +223,62 @@ def test_states_to_start_from_are_copied_and_used() -> None:
     states = random.integers(-16256, 16257, (12, 6)).astype(np.int16)
     before = states.copy()
     chosen = np.array([0, 2])
-    lives = [
+    rollouts = [
         Simulator(engine, LETTERS, chosen, Conditions(), np.random.default_rng(2), given, threads=1)
         for given in (states, states[::-1][::-1], engine.seed(12))
     ]
-    for life in lives:
-        life.run(3)
+    for rollout in rollouts:
+        rollout.run(3)
     assert np.array_equal(states, before)
-    assert np.array_equal(lives[0].states, lives[1].states)
-    assert not np.array_equal(lives[0].states, lives[2].states)
+    assert np.array_equal(rollouts[0].states, rollouts[1].states)
+    assert not np.array_equal(rollouts[0].states, rollouts[2].states)
 
 
-def faulty_cells(life: Simulator) -> NDArray[np.int64]:
-    return life.setup.faulty[life.setup.faulty >= 0]
+def faulty_cells(rollout: Simulator) -> NDArray[np.int64]:
+    return rollout.setup.faulty[rollout.setup.faulty >= 0]
 
 
-def life_with(fault: Fault, conditions: Conditions) -> tuple[Simulator, Course]:
-    life = simulator(conditions, fault)
-    course = life.run(30, record=True)
-    assert course.shown is not None
-    return life, course
+def rollout_with(fault: Fault, conditions: Conditions) -> tuple[Simulator, Trajectory]:
+    rollout = simulator(conditions, fault)
+    trajectory = rollout.run(30, record=True)
+    assert trajectory.shown is not None
+    return rollout, trajectory
 
 
 @pytest.mark.parametrize("schedule", ["random", "clock"])
 def test_a_tile_that_dies_is_dark_from_then_on_and_not_asked(schedule: Any) -> None:
-    life, course = life_with(Fault("dead", TILES, begin=12), Conditions(schedule))
-    shown = course.shown[:, faulty_cells(life)]  # type: ignore[index]
+    rollout, trajectory = rollout_with(Fault("dead", TILES, begin=12), Conditions(schedule))
+    shown = trajectory.shown[:, faulty_cells(rollout)]  # type: ignore[index]
     assert (shown[11] >= 0).all()
     assert (shown[12:] == -1).all()
-    others = np.ones(life.cells, np.bool_)
-    others[faulty_cells(life)] = False
-    good = (course.shown == life.batch.target) & others
-    expected = np.add.reduceat(good[-1], life.batch.starts) / np.add.reduceat(others, life.batch.starts)
-    assert course.right[-1] == pytest.approx(expected)
+    others = np.ones(rollout.cells, np.bool_)
+    others[faulty_cells(rollout)] = False
+    good = (trajectory.shown == rollout.batch.target) & others
+    expected = np.add.reduceat(good[-1], rollout.batch.starts) / np.add.reduceat(others, rollout.batch.starts)
+    assert trajectory.right[-1] == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("schedule", ["random", "clock"])
 def test_a_stuck_tile_keeps_its_state_and_display(schedule: Any) -> None:
-    life = simulator(Conditions(schedule), Fault("stuck", TILES, begin=7))
-    life.run(7)
-    states, shown = life.states.copy(), life.shown.copy()
-    life.run(20)
-    stuck = faulty_cells(life)
-    moved = (life.states != states).any(axis=1)
+    rollout = simulator(Conditions(schedule), Fault("stuck", TILES, begin=7))
+    rollout.run(7)
+    states, shown = rollout.states.copy(), rollout.shown.copy()
+    rollout.run(20)
+    stuck = faulty_cells(rollout)
+    moved = (rollout.states != states).any(axis=1)
     assert not moved[stuck].any()
-    assert np.array_equal(life.shown[stuck], shown[stuck])
+    assert np.array_equal(rollout.shown[stuck], shown[stuck])
     assert moved.sum() > len(stuck)
 
 
 @pytest.mark.parametrize("schedule", ["random", "clock"])
 def test_a_tile_that_was_away_is_dark_and_comes_back_as_the_seed(schedule: Any) -> None:
-    life = simulator(Conditions(schedule), Fault("away", TILES, begin=6, end=18))
-    course = life.run(18, record=True)
-    away = faulty_cells(life)
-    assert (course.shown[6:, away] == -1).all()  # type: ignore[index]
-    assert (course.right[6:, TILES >= 0] < 1).all(), "a dark tile is not right"
-    later = life.run(12, record=True)
+    rollout = simulator(Conditions(schedule), Fault("away", TILES, begin=6, end=18))
+    trajectory = rollout.run(18, record=True)
+    away = faulty_cells(rollout)
+    assert (trajectory.shown[6:, away] == -1).all()  # type: ignore[index]
+    assert (trajectory.right[6:, TILES >= 0] < 1).all(), "a dark tile is not right"
+    later = rollout.run(12, record=True)
     assert (later.shown[-1, away] >= 0).all()  # type: ignore[index]
 
 

@@ -6,7 +6,7 @@ import torch.nn.functional as F  # noqa: N812 - the usual name
 from numpy.typing import NDArray
 from torch import Tensor
 
-from tilenca.model.file import TAPS, Model
+from tilenca.model.file import NEIGHBOURHOOD, Model
 from tilenca.protocol.constants import HIDDEN_MAX, STATE_MAX
 from tilenca.simulator.engine import ExactEngine, States
 
@@ -67,7 +67,7 @@ def perceive_by_convolution(grid: Tensor) -> Tensor:
         (B, 5 * C, H, W) float32, same tap order as `perceive`.
     """
     channels = grid.shape[1]
-    kernel = torch.zeros(TAPS * channels, channels, 3, 3, dtype=grid.dtype)
+    kernel = torch.zeros(NEIGHBOURHOOD * channels, channels, 3, 3, dtype=grid.dtype)
     for tap, (row, col) in enumerate(((1, 1), (0, 1), (1, 2), (2, 1), (1, 0))):
         for channel in range(channels):
             kernel[tap * channels + channel, channel, row, col] = 1.0

@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Self
 
 from support.owned_clock import OwnedClock
-from tilenca.emulator.experiment import Conditions, Emulation, firmware_settings, port_name
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings, port_name
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.shapes.file import load_task
 
@@ -31,7 +31,7 @@ class Lab:
         shapes = folder / "lab.toml"
         shapes.write_text('[[shape]]\nlabel = "8"\ngrid = """\n' + "\n".join(rows) + '\n"""\n')
         task = load_task(shapes)
-        conditions = Conditions(seconds=None, bootloader=STOCK_BOOTLOADER, boot_spread_s=0.0)
+        conditions = EmulationSettings(seconds=None, bootloader=STOCK_BOOTLOADER, boot_spread_s=0.0)
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))

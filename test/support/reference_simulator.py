@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.protocol.constants import SILENT_PERIODS
-from tilenca.simulator.rollout_library import TICKS, UNITS_PER_STEP, Setup, units
+from tilenca.simulator.rollout_library import TICKS_PER_STEP, UNITS_PER_STEP, Setup, units
 
 NEVER = Fraction(-(10**9))
 
@@ -98,7 +98,7 @@ class SlowRun:
             while self.now < until:
                 if self.now >= 0 and self.now.denominator == 1:
                     self._change(int(self.now))
-                self.now += Fraction(1, TICKS)
+                self.now += Fraction(1, TICKS_PER_STEP)
                 self._tick()
         else:
             self._change(int(self.now))

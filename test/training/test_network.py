@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from support.integer_network import perceive_by_convolution
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
-from tilenca.model.file import LARGEST, STEPS, Dimensions
+from tilenca.model.file import LARGEST, SCALES, Dimensions
 from tilenca.shapes.batch import Batch, Drawings, load_drawings
 from tilenca.training.network import TileNet, initial_arrays, perceive
 from tilenca.training.recipes import RECIPES
-from tilenca.training.rollout import live, live_by_autograd, use_threads
+from tilenca.training.rollout import rollout, rollout_by_autograd, use_threads
 from tilenca.training.rollout_kernel import library
 from tilenca.training.update_schedule import Circumstances, draw_schedule
 
@@ -30,7 +30,7 @@ def drawings() -> Drawings:
 def usual(batch: Batch, **given: NDArray[np.bool_]) -> Circumstances:
     """All tiles on, running and known, but for what is given."""
     per_sample, per_cell = (np.zeros(len(what), np.bool_) for what in (batch.starts, batch.sample))
-    nothing = {"late": per_sample, "away": per_cell, "calm": per_sample, "fresh": per_cell}
+    nothing = {"staggered": per_sample, "away": per_cell, "lossless": per_sample, "fresh": per_cell}
     return Circumstances(**(nothing | given))
 
 
@@ -62,30 +62,32 @@ def test_an_untrained_cell_does_nothing() -> None:
     assert torch.equal(after, state)
 
 
-@pytest.mark.parametrize("bounded", [True, False])
-def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawings, bounded: bool) -> None:
+@pytest.mark.parametrize("quantisation_aware", [True, False])
+def test_a_rollout_and_its_gradient_equal_those_of_plain_autograd(
+    drawings: Drawings, quantisation_aware: bool
+) -> None:
     random = np.random.default_rng(7)
-    net = TileNet(Dimensions(), bounded, initial_arrays(Dimensions(), random, zero_last=False))
+    net = TileNet(Dimensions(), quantisation_aware, initial_arrays(Dimensions(), random, zero_last=False))
     batch = drawings.batch(np.arange(len(drawings)))
     # Stored states are whole multiples of 2^-13, saturated.
     states = np.round(random.normal(size=(len(batch.sample), 21)) * 8192).clip(-16256, 16256) / 8192
     start = torch.from_numpy(states.astype(np.float32)) * net.units
-    lives = random.integers(4, 13, len(drawings))
+    lengths = random.integers(4, 13, len(drawings))
     schedule = draw_schedule(
         RECIPES["full"],
         batch,
-        lives,
+        lengths,
         random,
         usual(
             batch,
-            late=random.random(len(drawings)) < 0.5,
+            staggered=random.random(len(drawings)) < 0.5,
             away=random.random(len(batch.sample)) < 0.1,
             fresh=random.random(len(batch.sample)) < 0.3,
         ),
     )
     pull = torch.from_numpy(random.normal(size=start.shape).astype(np.float32))
     ends, gradients = [], []
-    for way in (live, live_by_autograd):
+    for way in (rollout, rollout_by_autograd):
         net.zero_grad()
         end = way(net, start, schedule)
         (end * pull).sum().backward()  # type: ignore[no-untyped-call]
@@ -93,7 +95,7 @@ def test_a_life_and_its_gradient_equal_those_of_plain_autograd(drawings: Drawing
         gradients.append(
             {name: value.grad.clone() for name, value in net.named_parameters() if value.grad is not None}
         )
-    torch.testing.assert_close(ends[0], ends[1], rtol=0, atol=0 if bounded else 1e-4)
+    torch.testing.assert_close(ends[0], ends[1], rtol=0, atol=0 if quantisation_aware else 1e-4)
     assert set(gradients[0]) == set(Dimensions().shapes())
     for name, gradient in gradients[0].items():
         size = gradients[1][name].abs().max()
@@ -106,11 +108,11 @@ def test_projection_brings_every_weight_into_the_integer_range() -> None:
     net = TileNet(Dimensions(), True, huge)
     net.project()
     for name, value in net.named_parameters():
-        assert (value * STEPS[name] == LARGEST[name]).all(), name
+        assert (value * SCALES[name] == LARGEST[name]).all(), name
 
 
 def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latency(drawings: Drawings) -> None:
-    recipe = replace(RECIPES["full"], clocks=1.0, lossy=0.0, rounds_per_period=(4.0, 4.0), drift=0.0)
+    recipe = replace(RECIPES["full"], clocks=1.0, lossy=0.0, ticks_per_period=(4.0, 4.0), drift=0.0)
     recipe = replace(recipe, latency=(0.5, 0.5))
     batch = drawings.batch(np.array([0]))
     schedule = draw_schedule(
@@ -128,7 +130,7 @@ def test_tiles_on_clocks_update_once_per_period_and_are_heard_after_their_latenc
 
 
 def test_a_tile_is_nobody_until_its_first_message_has_arrived(drawings: Drawings) -> None:
-    recipe = replace(RECIPES["full"], lossy=0.0, clocks=1.0, unheard=1.0, max_unheard=0.9)
+    recipe = replace(RECIPES["full"], lossy=0.0, clocks=1.0, stale=1.0, max_stale=0.9)
     batch = drawings.batch(np.array([8]))
     cells = len(batch.sample)
     fresh = np.arange(cells) % 2 == 0
@@ -150,11 +152,11 @@ def test_a_tile_is_nobody_until_its_first_message_has_arrived(drawings: Drawings
 def test_lost_messages_read_as_nobody(drawings: Drawings) -> None:
     recipe = replace(RECIPES["full"], lossy=1.0, max_loss=1.0, longest_loss=1)
     batch = drawings.batch(np.arange(len(drawings)))
-    lives = np.full(len(drawings), 50)
+    lengths = np.full(len(drawings), 50)
     schedule = draw_schedule(
         recipe,
         batch,
-        lives,
+        lengths,
         np.random.default_rng(3),
         usual(batch),
     )
@@ -188,7 +190,7 @@ def test_nobody_updates_before_being_switched_on_or_after_the_end_of_its_life(dr
         batch,
         np.array([20, 30]),
         np.random.default_rng(3),
-        usual(batch, late=np.array([True, False])),
+        usual(batch, staggered=np.array([True, False])),
     )
     fires, _, neighbours = schedule.by_cell()
     late, prompt = fires[:, batch.sample == 0], fires[:, batch.sample == 1]
@@ -239,8 +241,10 @@ def test_too_many_classes_over_all_files_are_refused(tmp_path: Path) -> None:
 def test_any_number_of_threads_and_parts_lives_the_same_life(drawings: Drawings) -> None:
     random = np.random.default_rng(11)
     batch = drawings.batch(random.integers(len(drawings), size=9))
-    lives = np.full(9, 10)
-    schedule = draw_schedule(RECIPES["full"], batch, lives, random, usual(batch, late=random.random(9) < 0.3))
+    lengths = np.full(9, 10)
+    schedule = draw_schedule(
+        RECIPES["full"], batch, lengths, random, usual(batch, staggered=random.random(9) < 0.3)
+    )
     whole = schedule.by_cell()
     for wanted in (1, 2, 5, 40):
         parts = list(schedule.parts(wanted))
@@ -266,7 +270,7 @@ def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings)
         for threads in (1, 2, 3):
             use_threads(threads)
             net.zero_grad()
-            live(net, start, schedule).square().sum().backward()  # type: ignore[no-untyped-call]
+            rollout(net, start, schedule).square().sum().backward()  # type: ignore[no-untyped-call]
             gradients.append([value.grad.clone() for value in net.parameters() if value.grad is not None])
     finally:
         use_threads(1)

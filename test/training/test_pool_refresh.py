@@ -1,4 +1,4 @@
-"""The quiet pool lives ahead: by the kept weights, as the fast simulator would, and nothing else changes."""
+"""The undisturbed pool runs on with the EMA weights, as in the fast simulator, and nothing else changes."""
 
 from copy import deepcopy
 from dataclasses import replace
@@ -14,8 +14,8 @@ from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.simulator import Simulator
 from tilenca.training.curriculum import build
 from tilenca.training.network import initial_arrays
-from tilenca.training.pool import HAD_TIME, Pool, Pools
-from tilenca.training.pool_refresh import CLOCKS, MOST_STUCK, live_ahead, put_what_is_stuck
+from tilenca.training.pool import CONVERGED_AFTER, Pool, Pools
+from tilenca.training.pool_refresh import CLOCKS, MOST_HARD_EXAMPLES, mine_hard_examples, refresh_undisturbed
 from tilenca.training.recipes import RECIPES
 
 MODEL = load_model(paths.MODELS / "digits")
@@ -30,16 +30,16 @@ def pools() -> Pools:
     return Pools(recipe, build(task, recipe, sizes, random), 21, random)
 
 
-def ahead(pools: Pools, pool: Pool, steps: tuple[int, int], seed: int = 3) -> Pool:
+def refreshed(pools: Pools, pool: Pool, steps: tuple[int, int], seed: int = 3) -> Pool:
     pool = deepcopy(pool)
-    live_ahead(MODEL, pool, pools.drawings, steps, np.random.default_rng(seed))
+    refresh_undisturbed(MODEL, pool, pools.drawings, steps, np.random.default_rng(seed))
     return pool
 
 
 def test_seeds_of_digits_become_digits_that_agree(pools: Pools) -> None:
-    old = ahead(pools, pools.quiet, (100, 100))
-    assert (old.age > pools.quiet.age).all()
-    assert np.array_equal(old.drawing, pools.quiet.drawing)
+    old = refreshed(pools, pools.undisturbed, (100, 100))
+    assert (old.age > pools.undisturbed.age).all()
+    assert np.array_equal(old.drawing, pools.undisturbed.drawing)
     for number, drawing in enumerate(old.drawing):
         size = pools.drawings.sizes[drawing]
         scores = old.states[number, :size, -len(MODEL.labels) :]
@@ -48,7 +48,7 @@ def test_seeds_of_digits_become_digits_that_agree(pools: Pools) -> None:
 
 
 def test_states_go_through_integers_and_back_unharmed(pools: Pools) -> None:
-    old = ahead(pools, pools.quiet, (40, 40))
+    old = refreshed(pools, pools.undisturbed, (40, 40))
     random = np.random.default_rng(3)
     random.uniform()  # the number of steps
     simulator = Simulator(FastEngine(MODEL), pools.drawings, old.drawing, CLOCKS, random)
@@ -58,28 +58,28 @@ def test_states_go_through_integers_and_back_unharmed(pools: Pools) -> None:
 
 
 def test_the_number_of_steps_is_drawn_and_the_same_seed_draws_the_same(pools: Pools) -> None:
-    lives = [ahead(pools, pools.quiet, (5, 200), seed) for seed in (1, 1, 2)]
-    assert np.array_equal(lives[0].states, lives[1].states)
-    assert not np.array_equal(lives[0].age, lives[2].age)
+    ages = [refreshed(pools, pools.undisturbed, (5, 200), seed) for seed in (1, 1, 2)]
+    assert np.array_equal(ages[0].states, ages[1].states)
+    assert not np.array_equal(ages[0].age, ages[2].age)
 
 
 def test_what_does_not_agree_goes_into_the_busy_pool(pools: Pools) -> None:
     pools = deepcopy(pools)
-    before = deepcopy(pools.busy)
+    before = deepcopy(pools.perturbed)
     size = Dimensions(21, 12, 12)
     learnt_nothing, _ = quantise(size, MODEL.labels, initial_arrays(size, np.random.default_rng(1)), {})
-    assert put_what_is_stuck(learnt_nothing, pools, 4, np.random.default_rng(2)) > 10
+    assert mine_hard_examples(learnt_nothing, pools, 4, np.random.default_rng(2)) > 10
     new = np.flatnonzero(
-        (pools.busy.states != before.states).any(axis=(1, 2)) | (pools.busy.age != before.age)
+        (pools.perturbed.states != before.states).any(axis=(1, 2)) | (pools.perturbed.age != before.age)
     )
-    assert 0 < len(new) <= MOST_STUCK * len(before.age)
+    assert 0 < len(new) <= MOST_HARD_EXAMPLES * len(before.age)
     for number in new:
-        drawing = pools.busy.drawing[number]
-        cells = pools.busy.states[number, : pools.drawings.sizes[drawing]]
-        assert pools.busy.age[number] == HAD_TIME
+        drawing = pools.perturbed.drawing[number]
+        cells = pools.perturbed.states[number, : pools.drawings.sizes[drawing]]
+        assert pools.perturbed.age[number] == CONVERGED_AFTER
         assert (cells[:, -len(MODEL.labels) :].argmax(axis=1) != pools.drawings.classes[drawing]).any()
 
 
 def test_a_good_model_is_hardly_ever_stuck(pools: Pools) -> None:
     pools = deepcopy(pools)
-    assert put_what_is_stuck(MODEL, pools, 20, np.random.default_rng(2)) <= 5
+    assert mine_hard_examples(MODEL, pools, 20, np.random.default_rng(2)) <= 5

@@ -220,25 +220,28 @@ def test_what_was_measured_best_is_kept(tmp_path: Path) -> None:
             wanted = learner.now().weights
     learner.save(job.checkpoint)
     for trained in (learner.best(), trained_at(job.checkpoint, job.config)):
-        assert trained.kept == 2
+        assert trained.best_iteration == 2
         for name, weights in trained.weights.items():
             assert np.array_equal(weights, wanted[name])
     assert not np.array_equal(learner.now().weights["w3"], wanted["w3"])
 
 
 def test_a_model_says_how_it_was_made(model: Path) -> None:
-    made = load_model(model).made
-    assert (made["recipe_name"], made["seed"], made["recipe"]["iterations"]) == ("smoke", 5, 40)
-    assert made["sources"][0]["file"] == "two.toml"
+    metadata = load_model(model).metadata
+    assert (metadata["recipe_name"], metadata["seed"], metadata["recipe"]["iterations"]) == ("smoke", 5, 40)
+    assert metadata["sources"][0]["file"] == "two.toml"
     assert load_model(model).labels == ("1", "7", "-"), "tiles learn to say that they do not know"
     card = (model / "README.md").read_text()
-    assert made["command"] in card
+    assert metadata["command"] in card
     assert "the tiles' own clocks" in card
 
 
 def test_two_drawings_are_told_apart_after_a_short_training(shapes: Path) -> None:
-    recipe = replace(SMOKE, iterations=200, rounds=(8, 12), learning_rate=5e-3, pool=0, quiet_pool=0)
-    recipe = replace(recipe, quiet_batch=0, ahead_every=0, clocks=0.0, lossy=0.0, damaged=0.0, unknown=0.0)
+    recipe = replace(
+        SMOKE, iterations=200, ticks=(8, 12), learning_rate=5e-3, perturbed_pool=0, undisturbed_pool=0
+    )
+    recipe = replace(recipe, undisturbed_batch=0, refresh_every=0, clocks=0.0)
+    recipe = replace(recipe, lossy=0.0, damaged=0.0, unknown=0.0)
     learner = make_trainer(job_of([shapes], paths.BUILD, 1, 16, recipe))
     agreements = [learner.step().agreement for _ in range(200)]
     assert np.mean(agreements[:20]) < 0.6
@@ -266,7 +269,7 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
     learner = trainer()
     for _ in range(30):
         learner.step()
-    for pool in (learner.pools.busy, learner.pools.quiet):
+    for pool in (learner.pools.perturbed, learner.pools.undisturbed):
         sizes = learner.drawings.sizes[pool.drawing]
         for states, size in zip(pool.states, sizes, strict=True):
             assert not states[size:].any()
@@ -280,16 +283,16 @@ def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
     four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
     kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])
     for _ in range(200):
-        pools.busy.drawing[0] = four
-        pools.busy.states[0] = 0
-        pools.busy.states[0, :kept, 3] = 0.25
-        pools.switch(pools.busy, 0)
-        if pools.busy.drawing[0] == nine:
+        pools.perturbed.drawing[0] = four
+        pools.perturbed.states[0] = 0
+        pools.perturbed.states[0, :kept, 3] = 0.25
+        pools.switch(pools.perturbed, 0)
+        if pools.perturbed.drawing[0] == nine:
             break
-    assert pools.busy.drawing[0] == nine
-    assert (pools.busy.states[0, :all_of_nine, 3] == 0.25).sum() == kept
-    assert (pools.busy.states[0, :all_of_nine, 0] == 1.0).sum() == all_of_nine - kept
-    assert not pools.busy.states[0, all_of_nine:].any()
+    assert pools.perturbed.drawing[0] == nine
+    assert (pools.perturbed.states[0, :all_of_nine, 3] == 0.25).sum() == kept
+    assert (pools.perturbed.states[0, :all_of_nine, 0] == 1.0).sum() == all_of_nine - kept
+    assert not pools.perturbed.states[0, all_of_nine:].any()
 
 
 Refusal = Callable[[Path, Path], list[str]]
@@ -387,7 +390,7 @@ def test_odd_shape_files_are_trained_and_examined(
     file = tmp_path / "odd.toml"
     file.write_text(content)
     assert train(file, tmp_path / "out", "--iterations", "20") == 0
-    words = ["evaluate", "--exam", "--model", str(tmp_path / "out"), "--shapes", str(file), "--runs", "2"]
+    words = ["evaluate", "--suite", "--model", str(tmp_path / "out"), "--shapes", str(file), "--runs", "2"]
     trained = json.loads((tmp_path / "out" / "metrics.json").read_text())
     capsys.readouterr()
     assert cli.main([*words, "--seed", str(trained["seed"]), "--json"]) == 0

@@ -24,13 +24,13 @@ from tilenca.protocol.sentences import LinkSentence, TileSentence, TimeSentence,
 COLUMNS = 5
 STATE = bytes([128] * 21)
 FACING = dict(zip("NESW", "SWNE", strict=True))
-STEPS = {"N": -COLUMNS, "E": 1, "S": COLUMNS, "W": -1}
+TILE_OFFSETS = {"N": -COLUMNS, "E": 1, "S": COLUMNS, "W": -1}
 READY_S = 3.0
 
 
 def neighbour(tile: int, side: str, count: int) -> int | None:
     """The tile on a side, in rows of COLUMNS; tiles count from 1."""
-    other = tile + STEPS[side]
+    other = tile + TILE_OFFSETS[side]
     if not 1 <= other <= count or (side in "EW" and (other - 1) // COLUMNS != (tile - 1) // COLUMNS):
         return None
     return other

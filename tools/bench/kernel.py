@@ -30,15 +30,15 @@ from tilenca.simulator.simulator import Conditions, Simulator
 BEGIN, END = "<!-- kernel: made by `make bench`, do not edit -->", "<!-- /kernel -->"
 WIDTHS = (40, 64, 96)
 TRAINED = {40: "paper", 96: "digits"}
-CELLS = 48  # of a tissue, to be typical of it
-STEPS_YOUNG, STEPS_SETTLED = 5, 100
+CELLS = 48  # of a trained grid, as a sample
+STEPS_YOUNG, STEPS_CONVERGED = 5, 100
 MOST_S = 60
 FLOAT_WIDTH = 64  # wider ones have more float weights than LPM reaches
 
 
 @dataclass(frozen=True)
 class Given:
-    """What cells start an update from.
+    """The inputs and states of cells before an update.
 
     Attributes:
         inputs: (cells, 5 C) messages.
@@ -74,7 +74,7 @@ class Cycles:
     floating: int | None
 
 
-def any_model(size: Dimensions, narrow: bool, zeros: bool = False) -> Model:
+def any_model(size: Dimensions, is_16_bit: bool, zeros: bool = False) -> Model:
     """Weights and biases that leave no activation at zero, with sums of 16 or of 24 bits throughout.
 
     With `zeros`, every other activation is.
@@ -83,15 +83,15 @@ def any_model(size: Dimensions, narrow: bool, zeros: bool = False) -> Model:
     integer: dict[str, NDArray[Any]] = {}
     for name, shape in size.shapes().items():
         if name.startswith("b"):
-            integer[name] = np.full(shape, 8000 if narrow else 32767, np.int16)
+            integer[name] = np.full(shape, 8000 if is_16_bit else 32767, np.int16)
             integer[name][1 if zeros else shape[0] :: 2] *= -1
         else:
-            weights = random.integers(-1, 2, shape) if narrow else random.integers(1, 21, shape)
+            weights = random.integers(-1, 2, shape) if is_16_bit else random.integers(1, 21, shape)
             integer[name] = weights.astype(np.int8)
-    if not narrow:
+    if not is_16_bit:
         integer["w1"] *= random.choice(np.array([-1, 1], np.int8), integer["w1"].shape)
     model = network(size, integer)
-    assert {one.narrow for layer in (1, 2, 3) for one in packing.passes(model, layer)} == {narrow}
+    assert {one.is_16_bit for layer in (1, 2, 3) for one in packing.blocks(model, layer)} == {is_16_bit}
     return model
 
 
@@ -104,18 +104,18 @@ def dense(size: Dimensions, zeros: bool = False) -> Given:
     return Given((sizes * signs).astype(np.int8), np.zeros((1, size.channels), np.int16))
 
 
-def tissue(model: Model, steps: int) -> Given:
+def trained_cells(model: Model, steps: int) -> Given:
     """Some cells of the ten digits after so many steps on the clocks of real tiles."""
     drawings = load_drawings([SHAPES / "digits.toml"], labels=model.labels)
     random = np.random.default_rng(2)
     engine = FastEngine(model)
-    life = Simulator(engine, drawings, np.arange(len(drawings)), Conditions("clock"), random, threads=1)
-    life.run(steps)
-    messages = engine.message(life.states)
+    simulator = Simulator(engine, drawings, np.arange(len(drawings)), Conditions("clock"), random, threads=1)
+    simulator.run(steps)
+    messages = engine.message(simulator.states)
     known = np.vstack([messages, np.zeros_like(messages[:1])])
-    inputs = np.hstack([messages, *(known[life.batch.neighbours[:, side]] for side in range(4))])
+    inputs = np.hstack([messages, *(known[simulator.batch.neighbours[:, side]] for side in range(4))])
     chosen = random.choice(len(inputs), CELLS, replace=False)
-    return Given(inputs[chosen], life.states[chosen])
+    return Given(inputs[chosen], simulator.states[chosen])
 
 
 def measure(model: Model, given: Given, with_float: bool = False) -> Cycles:
@@ -165,17 +165,17 @@ def rows() -> list[tuple[str, ...]]:
     found = []
     for width in WIDTHS:
         size = Dimensions(21, width, width)
-        for narrow in (False, True):
-            what = f"hidden {width}, sums of {16 if narrow else 24} bits, nothing is zero"
-            with_float = not narrow and width <= FLOAT_WIDTH
-            found.append(row(what, size, measure(any_model(size, narrow), dense(size), with_float)))
+        for is_16_bit in (False, True):
+            what = f"hidden {width}, sums of {16 if is_16_bit else 24} bits, nothing is zero"
+            with_float = not is_16_bit and width <= FLOAT_WIDTH
+            found.append(row(what, size, measure(any_model(size, is_16_bit), dense(size), with_float)))
         what = f"hidden {width}, sums of 16 bits, every other value is zero"
         found.append(row(what, size, measure(any_model(size, True, zeros=True), dense(size, zeros=True))))
         if width in TRAINED:
             model = load_model(ROOT / "models" / TRAINED[width])
-            for name, steps in (("young", STEPS_YOUNG), ("settled", STEPS_SETTLED)):
-                what = f"hidden {width}, `models/{TRAINED[width]}`, {name} tissue"
-                found.append(row(what, size, measure(model, tissue(model, steps))))
+            for name, steps in (("young", STEPS_YOUNG), ("converged", STEPS_CONVERGED)):
+                what = f"hidden {width}, `models/{TRAINED[width]}`, {name} grid"
+                found.append(row(what, size, measure(model, trained_cells(model, steps))))
     return found
 
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from firmware import budgets
 from tilenca.base import paths
-from tilenca.emulator.experiment import Conditions as Powering
-from tilenca.emulator.experiment import Emulation, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import load_task
@@ -20,20 +19,20 @@ from tilenca.simulator.simulator import Conditions, Simulator
 
 SHAPE = "8"  # of the paper's digits the one with the most tiles
 SEED = 0
-RUNS, STEPS, TURNS = 20, 60, 5  # of the simulator
+RUNS, SIMULATED_STEPS, TURNS = 20, 60, 5  # of the simulator
 
 
 def emulation(elf: Path, seconds: float) -> list[str]:
     """Emulates a whole drawing on one core; one line per figure.
 
-    Cycle counts are exact and the same on every machine, since the seed decides all there is to decide.
+    Cycle counts are exact and the same on every machine, since the seed decides everything.
 
     Raises:
         TilencaError: the image cannot be emulated.
     """
     task = load_task(paths.DEFAULT_SHAPES)
     running = Emulation(
-        task, task.find(SHAPE), elf, Powering(seconds=seconds, seed=SEED), firmware_settings(elf)
+        task, task.find(SHAPE), elf, EmulationSettings(seconds=seconds, seed=SEED), firmware_settings(elf)
     )
     with running.array:
         started_s = time.perf_counter()
@@ -57,7 +56,7 @@ def emulation(elf: Path, seconds: float) -> list[str]:
 def simulator() -> list[str]:
     """Simulates all shipped digits on one core, in turn with the chip's own code on one cell after the other.
 
-    Processor time, so that whoever else is busy here counts little.
+    Processor time, so that other load on this machine counts little.
     """
     model = load_model(paths.DEFAULT_MODEL)
     drawings = load_drawings(sorted(paths.SHAPES.glob("digits*.toml")), labels=model.labels)
@@ -65,16 +64,16 @@ def simulator() -> list[str]:
     whole, alone = [], []
     for turn in range(TURNS):
         random = np.random.default_rng(turn)
-        life = Simulator(
+        simulator = Simulator(
             FastEngine(model), drawings, chosen, Conditions("clock", loss=0.1), random, threads=1
         )
         started_s = time.process_time()
-        life.run(STEPS)
-        whole.append(life.updates / (time.process_time() - started_s))
-        inputs = np.tile(FastEngine(model).message(life.states), 5)
+        simulator.run(SIMULATED_STEPS)
+        whole.append(simulator.updates / (time.process_time() - started_s))
+        inputs = np.tile(FastEngine(model).message(simulator.states), 5)
         started_s = time.process_time()
-        core_library.update_cells(model, life.states, inputs, lanes=1)
-        alone.append(life.cells / (time.process_time() - started_s))
+        core_library.update_cells(model, simulator.states, inputs, lanes=1)
+        alone.append(simulator.cells / (time.process_time() - started_s))
     speed, ratio = np.median(whole), np.median(np.divide(whole, alone))
     return [
         f"{'simulation, one core':<22} {speed / 1e6:.1f} million cell updates/s with clocks, links and loss, "

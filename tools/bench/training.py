@@ -1,7 +1,7 @@
 """Prints how fast training is against plain PyTorch: bench.training.
 
-All let the same batch live through the same rounds and give the gradient of the same loss, on one thread;
-that they agree is checked. The batch is the paper's: 128 drawings of 5 x 4, half of the tiles in a round.
+All run the same batch through the same ticks and give the gradient of the same loss, on one thread; a check
+compares their results. The batch is the paper's: 128 drawings of 5 x 4, half of the tiles in a tick.
 """
 
 import sys
@@ -18,11 +18,11 @@ from tilenca.model.file import Dimensions
 from tilenca.shapes.batch import load_drawings
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.recipes import RECIPES
-from tilenca.training.rollout import live, live_by_autograd, use_threads
+from tilenca.training.rollout import rollout, rollout_by_autograd, use_threads
 from tilenca.training.rollout_kernel import library
-from tilenca.training.update_schedule import Circumstances, Schedule, draw_schedule
+from tilenca.training.update_schedule import Circumstances, UpdateSchedule, draw_schedule
 
-ROUNDS, BATCH, TURNS, SEED = 19, 128, 5, 1
+TICKS, BATCH, TURNS, SEED = 19, 128, 5, 1
 
 
 def by_convolution(net: TileNet, start: Tensor, fires: Tensor, tiles: Tensor) -> Tensor:
@@ -35,12 +35,12 @@ def by_convolution(net: TileNet, start: Tensor, fires: Tensor, tiles: Tensor) ->
         tiles: (B, 1, H, W) float32, 1 where there is a tile.
 
     Returns:
-        (B, C, H, W) float32, the states after the last round.
+        (B, C, H, W) float32, the states after the last tick.
     """
     w1, b1, w2, b2, w3, b3 = net.weights()
     kernel = w1.new_zeros(len(w1), start.shape[1], 3, 3)
-    for tap, (row, col) in enumerate(((1, 1), (0, 1), (1, 2), (2, 1), (1, 0))):
-        kernel[:, :, row, col] = w1[:, tap * start.shape[1] : (tap + 1) * start.shape[1]]
+    for part, (row, col) in enumerate(((1, 1), (0, 1), (1, 2), (2, 1), (1, 0))):
+        kernel[:, :, row, col] = w1[:, part * start.shape[1] : (part + 1) * start.shape[1]]
     state = start
     for now in fires:
         hidden = F.relu(F.conv2d(state, kernel, b1, padding=1))
@@ -50,7 +50,7 @@ def by_convolution(net: TileNet, start: Tensor, fires: Tensor, tiles: Tensor) ->
 
 
 def seconds_of(do: Callable[[], Tensor], net: TileNet) -> float:
-    """Processor seconds of a life and its gradient."""
+    """Processor seconds of a rollout and its gradient."""
     started_s = time.process_time()
     net.zero_grad()
     do().square().sum().backward()  # type: ignore[no-untyped-call]
@@ -69,13 +69,13 @@ def main() -> int:
     drawings = load_drawings([paths.DEFAULT_SHAPES])
     batch = drawings.batch(random.integers(len(drawings), size=BATCH))
     cells = len(batch.sample)
-    quiet = np.zeros(BATCH, np.bool_)
-    schedule: Schedule = draw_schedule(
+    none = np.zeros(BATCH, np.bool_)
+    schedule: UpdateSchedule = draw_schedule(
         RECIPES["paper"],
         batch,
-        np.full(BATCH, ROUNDS),
+        np.full(BATCH, TICKS),
         random,
-        Circumstances(quiet, np.zeros(cells, np.bool_), ~quiet, np.zeros(cells, np.bool_)),
+        Circumstances(none, np.zeros(cells, np.bool_), ~none, np.zeros(cells, np.bool_)),
     )
     net = TileNet(Dimensions(), False, initial_arrays(Dimensions(), random, zero_last=False))
     with torch.no_grad():  # small steps, or states grow beyond what two orders of summation agree on
@@ -89,23 +89,23 @@ def main() -> int:
     samples = torch.from_numpy(batch.sample)
     size = (max(rows.tolist()) + 1, max(cols.tolist()) + 1)
     tiles, grid = torch.zeros(BATCH, 1, *size), torch.zeros(BATCH, 21, *size)
-    fires = torch.zeros(ROUNDS, BATCH, 1, *size)
+    fires = torch.zeros(TICKS, BATCH, 1, *size)
     tiles[samples, 0, rows, cols] = 1.0
     grid[samples, :, rows, cols] = start
     fires[:, samples, 0, rows, cols] = torch.from_numpy(schedule.by_cell()[0].astype(np.float32))
 
     def ours() -> Tensor:
-        return live(net, start, schedule)
+        return rollout(net, start, schedule)
 
     def convolved() -> Tensor:
         return by_convolution(net, grid, fires, tiles)
 
     def by_pytorch() -> Tensor:
-        return live_by_autograd(net, start, schedule)
+        return rollout_by_autograd(net, start, schedule)
 
     apart = (convolved()[samples, :, rows, cols] - ours()).abs().max().item()
     kind = library().tilenca_life_kind().decode()
-    print(f"training: a life of {BATCH} drawings and its gradient, one thread, {kind}")
+    print(f"training: a rollout of {BATCH} drawings and its gradient, one thread, {kind}")
     ways = {"convolutions over the padded grid": convolved, "plain PyTorch on real tiles": by_pytorch}
     for name, way in ways.items():
         print(f"  {ratio(way, ours, net):.1f} times faster than {name}")

@@ -36,8 +36,6 @@ ROWS = {
     "other strokes": ("other choices of the same strokes, never trained on", 60),
 }
 
-Row = dict[str, Any]
-
 
 def metrics_of(model: str) -> dict[str, Any]:
     """The metrics of a shipped model."""
@@ -128,9 +126,9 @@ def rendered(text: str) -> str:
 def measure(name: str) -> None:
     """Asks a shipped model again all that its card shows, and keeps the answers in its metrics."""
     metrics, model = metrics_of(name), load_model(MODELS / name)
-    words = [sys.executable, "-m", "tilenca.cli", "evaluate", "--exam", "--json"]
+    words = [sys.executable, "-m", "tilenca.cli", "evaluate", "--suite", "--json"]
     words += ["--model", str(MODELS / name)]
-    words += ["--shapes", *(str(paths.ROOT / place) for place in model.made["shapes"])]
+    words += ["--shapes", *(str(paths.ROOT / place) for place in model.metadata["shapes"])]
     words += ["--runs", str(metrics["runs_per_drawing"]), "--seed", str(metrics["seed"])]
     answer = subprocess.run(words, check=True, capture_output=True, text=True).stdout
     new = metrics | json.loads(answer)["metrics"]

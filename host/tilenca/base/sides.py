@@ -3,7 +3,7 @@
 NORTH, EAST, SOUTH, WEST = range(4)
 SIDES = "NESW"
 # Rows and columns from a tile to its neighbour on each side.
-STEPS: tuple[tuple[int, int], ...] = ((-1, 0), (0, 1), (1, 0), (0, -1))
+OFFSETS: tuple[tuple[int, int], ...] = ((-1, 0), (0, 1), (1, 0), (0, -1))
 
 
 def opposite(side: int) -> int:

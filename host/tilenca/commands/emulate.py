@@ -21,7 +21,7 @@ from tilenca.base.errors import UsageError, image_error
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, number, seed, size, whole
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
-from tilenca.emulator.experiment import Conditions, Emulation, firmware_settings, save_eeprom
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings, save_eeprom
 from tilenca.emulator.faults import parse as parse_fault
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.fleet.recording import Recorder, as_record
@@ -51,7 +51,7 @@ LayOut = Callable[[Shape], Emulation]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class EmulationResult:
     """A shape that has run to its end; `notes` are for stderr, once each."""
 
     report: dict[str, Any]
@@ -164,7 +164,7 @@ def run(args: argparse.Namespace) -> int:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
     defaults = firmware_settings(args.elf)
-    conditions = Conditions(
+    settings = EmulationSettings(
         seconds=args.seconds,
         updates=args.updates or DEFAULT_UPDATES,
         period_ms=args.period_ms,
@@ -178,7 +178,7 @@ def run(args: argparse.Namespace) -> int:
     )
 
     def lay_out(shape: Shape) -> Emulation:
-        return Emulation(task, shape, args.elf, conditions, defaults)
+        return Emulation(task, shape, args.elf, settings, defaults)
 
     if args.serve is not None:
         emulation = lay_out(shapes[0])
@@ -254,12 +254,12 @@ def _record_line(shape: Shape, heard: Heard) -> str:
     return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
 
 
-def _outcome(emulation: Emulation, started: float) -> Outcome:
+def _outcome(emulation: Emulation, started: float) -> EmulationResult:
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
     if remedy := mismatch(emulation):
         notes.append(remedy)
     report = emulation.report(time.monotonic() - started)
-    return Outcome(report, take_picture(emulation), verdict(emulation), tuple(notes))
+    return EmulationResult(report, take_picture(emulation), verdict(emulation), tuple(notes))
 
 
 @contextmanager
@@ -303,11 +303,11 @@ def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]
 
 def _run_all(
     args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None, tell: Tell
-) -> list[Outcome]:
+) -> list[EmulationResult]:
     """Runs shapes side by side, since they know nothing of each other; results come in their order."""
     stopped = threading.Event()
 
-    def one(shape: Shape) -> tuple[Outcome, list[str]]:
+    def one(shape: Shape) -> tuple[EmulationResult, list[str]]:
         started = time.monotonic()
         kept: list[str] = []
 
@@ -342,7 +342,9 @@ def _run_all(
     return outcomes
 
 
-def _watch(args: argparse.Namespace, lay_out: LayOut, shape: Shape, record: Recorder | None) -> Outcome:
+def _watch(
+    args: argparse.Namespace, lay_out: LayOut, shape: Shape, record: Recorder | None
+) -> EmulationResult:
     """Runs one shape in step with the wall clock, or slower, and shows it."""
     console = Console()
     started = time.monotonic()
@@ -381,7 +383,7 @@ def _tell_changes(emulation: Emulation, told: list[int]) -> None:
         print(f"{time_s:8.3f} s  {emulation.shape.name}: tile {index + 1} shows {shown}")
 
 
-def _print(args: argparse.Namespace, outcomes: Sequence[Outcome]) -> None:
+def _print(args: argparse.Namespace, outcomes: Sequence[EmulationResult]) -> None:
     all_right = all(outcome.report["all_right"] for outcome in outcomes)
     if args.json:
         reports = [outcome.report for outcome in outcomes]

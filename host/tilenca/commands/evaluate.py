@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.commands.arguments import count, seed, share, size
-from tilenca.evaluation.metrics import SETTLED, settle_times, validate
-from tilenca.evaluation.suites import Aims, set_exam
+from tilenca.evaluation.metrics import CONVERGED_BY, convergence_times, validate
+from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 from tilenca.shapes.file import load_task
@@ -23,11 +23,11 @@ from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Conditions, Simulator
 from tilenca.views.table import table
 
-# Options that --exam has no use for, and their defaults.
-EXAM_SETS = {
+# Options that --suite does not take, and their defaults.
+FIXED_BY_SUITE = {
     "engine": "fast",
     "schedule": "clock",
-    "steps": SETTLED,
+    "steps": CONVERGED_BY,
     "size": None,
     "loss": 0.0,
     "lost": "held",
@@ -37,20 +37,20 @@ RUNS = {"fast": 100, "float": 100, "emulator": 1}
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What was measured, one entry per run.
+class RunResults:
+    """The measured runs, one entry per run.
 
     Attributes:
         chosen: (R,) the drawing.
         right: (R,) share of tiles that show the right class at the end.
-        settled: (R,) step from which all were right to the end; infinite for none.
-        lapsed: (R,) whether a tile was wrong after step 60, in runs longer than that.
+        converged_at: (R,) step from which all were right to the end; infinite for none.
+        regressed: (R,) whether a tile was wrong after step 60, in runs longer than that.
     """
 
     chosen: NDArray[np.int64]
     right: NDArray[np.float32]
-    settled: NDArray[np.float64]
-    lapsed: NDArray[np.bool_]
+    converged_at: NDArray[np.float64]
+    regressed: NDArray[np.bool_]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,10 +77,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="fast: the firmware's core on this machine; float: the PyTorch model; emulator: the ELF",
     )
     parser.add_argument(
-        "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles'"
+        "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles' clocks"
     )
     parser.add_argument(
-        "--steps", type=count, default=SETTLED, metavar="N", help=f"updates per tile ({SETTLED})"
+        "--steps", type=count, default=CONVERGED_BY, metavar="N", help=f"updates per tile ({CONVERGED_BY})"
     )
     parser.add_argument("--runs", type=count, metavar="N", help="runs per drawing (100; emulator: 1)")
     parser.add_argument(
@@ -90,10 +90,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="stretch the drawings to so many rows and columns, like 9x7",
     )
     parser.add_argument(
-        "--exam",
+        "--suite",
         action="store_true",
-        help="measure all that a model card shows: sizes, loss, damage, changes, unknown shapes, long runs",
+        help="run the test suite of the model card: sizes, loss, damage, changes, unknown shapes, long runs",
     )
+    parser.add_argument(
+        "--exam", dest="suite", action="store_true", help=argparse.SUPPRESS
+    )  # its name in 0.1
     parser.add_argument("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1")
     parser.add_argument(
         "--lost",
@@ -114,8 +117,8 @@ def run(args: argparse.Namespace) -> int:
     """Measures and prints."""
     runs = RUNS[args.engine] if args.runs is None else args.runs
     model = load_model(args.model)
-    if args.exam:
-        return _exam(args, model)
+    if args.suite:
+        return _run_suite(args, model)
     drawings = load_drawings(args.shapes, labels=model.labels)
     if args.size is not None:
         drawings = _at_size(drawings, args.size)
@@ -125,9 +128,11 @@ def run(args: argparse.Namespace) -> int:
     else:
         conditions = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
         random = np.random.default_rng(args.seed)
-        course = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random).run(args.steps)
-        lapsed = ~course.agreed[SETTLED - 1 :].all(axis=0) & (args.steps > SETTLED)
-        outcome = Outcome(chosen, course.right[-1], course.settled, lapsed)
+        trajectory = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random).run(
+            args.steps
+        )
+        regressed = ~trajectory.agreed[CONVERGED_BY - 1 :].all(axis=0) & (args.steps > CONVERGED_BY)
+        outcome = RunResults(chosen, trajectory.right[-1], trajectory.converged_at, regressed)
     report = _report(args, model, drawings, runs, outcome)
     if args.json:
         print(json.dumps(report))
@@ -136,16 +141,16 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _exam(args: argparse.Namespace, model: Model) -> int:
-    """The card's measurements, which the same seed and number of runs repeat."""
-    for option, usual in EXAM_SETS.items():
+def _run_suite(args: argparse.Namespace, model: Model) -> int:
+    """The measurements of the model card; the same seed and number of runs repeat them."""
+    for option, usual in FIXED_BY_SUITE.items():
         if getattr(args, option) != usual:
-            raise UsageError(f"--exam sets its own conditions; leave --{option} out")
+            raise UsageError(f"--suite sets its own conditions; leave --{option} out")
     aims = _aims(model)
     task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
-    exam = set_exam(task, sizes, model.labels, aims, args.seed)
+    suite = make_suite(task, sizes, model.labels, aims, args.seed)
     say = (lambda _: None) if args.json else print
-    metrics = validate(FastEngine(model), exam, args.runs or RUNS["fast"], args.seed, say)
+    metrics = validate(FastEngine(model), suite, args.runs or RUNS["fast"], args.seed, say)
     if args.json:
         print(json.dumps({"model": f"{model.model_id:04X}", "metrics": metrics}))
     else:
@@ -154,13 +159,13 @@ def _exam(args: argparse.Namespace, model: Model) -> int:
 
 
 def _aims(model: Model) -> Aims:
-    """What the model says it was trained for; nothing beyond its drawings where it does not say."""
-    recipe = model.made.get("recipe", {})
+    """The aims in the model's metadata; its drawings alone where the metadata have none."""
+    recipe = model.metadata.get("recipe", {})
     stretch, damaged, unknown = (
         recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0))
     )
     if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown)):
-        raise UsageError(f"model {model.model_id:04X}: made.recipe has no numbers in it; check out again")
+        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; check out again")
     return Aims(float(stretch), damaged > 0, unknown > 0)
 
 
@@ -191,9 +196,8 @@ def _engine(name: str, model: Model) -> Engine:
 
 def _emulate(
     args: argparse.Namespace, model: Model, drawings: Drawings, chosen: NDArray[np.int64]
-) -> Outcome:
-    from tilenca.emulator.experiment import Conditions as Powering
-    from tilenca.emulator.experiment import Emulation, firmware_settings
+) -> RunResults:
+    from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
@@ -201,11 +205,11 @@ def _emulate(
         raise BuildError(f"{paths.FIRMWARE_ELF}: no firmware image; run `make demo` or `pio run`")
     tasks = [load_task(path) for path in args.shapes]
     defaults = firmware_settings(paths.FIRMWARE_ELF)
-    right, settled = [], []
+    right, converged_at = [], []
     for run, number in enumerate(chosen):
         shape = drawings.shapes[number]
-        powering = Powering(updates=args.steps, seed=args.seed * 1000 + run)
-        tissue = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, powering, defaults)
+        settings = EmulationSettings(updates=args.steps, seed=args.seed * 1000 + run)
+        emulation = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, settings, defaults)
 
         def check(running: Emulation, _: list[Any]) -> None:
             if running.hello is not None and running.hello.model_id != model.model_id:
@@ -214,16 +218,20 @@ def _emulate(
                     f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
                 )
 
-        with tissue.array:
-            tissue.run(check)
-            right.append(sum(tissue.shown(tile) == shape.label for tile in tissue.array) / len(shape.cells))
-            updates = tissue.agreed_at_update()
-        settled.append(math.inf if updates is None else max(updates, 1))
-    return Outcome(chosen, np.array(right, np.float32), np.array(settled), np.zeros(len(chosen), np.bool_))
+        with emulation.array:
+            emulation.run(check)
+            right.append(
+                sum(emulation.shown(tile) == shape.label for tile in emulation.array) / len(shape.cells)
+            )
+            updates = emulation.agreed_at_update()
+        converged_at.append(math.inf if updates is None else max(updates, 1))
+    return RunResults(
+        chosen, np.array(right, np.float32), np.array(converged_at), np.zeros(len(chosen), np.bool_)
+    )
 
 
 def _report(
-    args: argparse.Namespace, model: Model, drawings: Drawings, runs: int, outcome: Outcome
+    args: argparse.Namespace, model: Model, drawings: Drawings, runs: int, outcome: RunResults
 ) -> dict[str, Any]:
     agreed = outcome.right >= 1.0
     per_shape = []
@@ -237,7 +245,7 @@ def _report(
                 "grid": shape.grid,
                 "cells_right": round(float(outcome.right[mine].mean()), 6),
                 "total_agreement": round(float(agreed[mine].mean()), 6),
-                "steps_to_agreement": settle_times(outcome.settled[mine]),
+                "steps_to_agreement": convergence_times(outcome.converged_at[mine]),
             }
         )
     return {
@@ -248,8 +256,8 @@ def _report(
         "runs": runs,
         "cells_right": round(float(outcome.right.mean()), 6),
         "total_agreement": round(float(agreed.mean()), 6),
-        "steps_to_agreement": settle_times(outcome.settled),
-        "runs_with_a_lapse": int(outcome.lapsed.sum()),
+        "steps_to_agreement": convergence_times(outcome.converged_at),
+        "runs_with_a_regression": int(outcome.regressed.sum()),
         "per_shape": per_shape,
     }
 

@@ -14,13 +14,13 @@ from tilenca.model.render import check_fits, is_current, render, write_files
 
 def _sums(model: Model) -> str:
     """Which sums are proven to need 16 bits only; one line."""
-    narrow = [
+    in_16_bits = [
         f"layer {layer} {one.outputs.start}..{one.outputs.stop - 1}"
         for layer in (1, 2, 3)
-        for one in packing.passes(model, layer)
-        if one.narrow
+        for one in packing.blocks(model, layer)
+        if one.is_16_bit
     ]
-    return f"sums of 16 bits: {', '.join(narrow) or 'none'}; of 24 bits: all others"
+    return f"sums of 16 bits: {', '.join(in_16_bits) or 'none'}; of 24 bits: all others"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +53,9 @@ def run(args: argparse.Namespace) -> int:
         "files": [str(args.out / path) for path in files],
         "flash_bytes": cost.flash_bytes(model.dimensions, len(model.labels)),
         "model_id": f"{model.model_id:04X}",
-        "narrow_outputs": [packing.narrow_outputs(packing.passes(model, layer)) for layer in (1, 2, 3)],
+        "outputs_in_16_bits": [
+            packing.outputs_in_16_bits(packing.blocks(model, layer)) for layer in (1, 2, 3)
+        ],
         "differing" if args.check else "written": differing,
     }
     if args.json:

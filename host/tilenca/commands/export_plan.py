@@ -1,4 +1,4 @@
-"""`tilenca export --plan`: what a network of given widths would cost a tile, before anybody trains it."""
+"""`tilenca export --plan`: what a network of given widths would cost a tile, before it is trained."""
 
 import argparse
 import json

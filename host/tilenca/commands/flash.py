@@ -14,10 +14,10 @@ from tilenca.fleet.build import FIRMWARE_HEX, build
 from tilenca.fleet.flash_state import failed_boards, remember
 from tilenca.fleet.identify import PATIENCE_S, SILENT, Answer, ask_all
 from tilenca.fleet.image import Image, check_image
-from tilenca.fleet.programmer import Outcome, program_all
+from tilenca.fleet.programmer import ProgramResult, program_all
 from tilenca.fleet.tiles_file import Place
 from tilenca.views.flash import Display, display
-from tilenca.views.flash_results import GOOD, Row, tell
+from tilenca.views.flash_results import GOOD, FlashRow, tell
 
 # Three of avrdude's attempts to get an answer, which are 5 s apart.
 TIMEOUT_S = 12.0
@@ -52,7 +52,7 @@ class _Flashing:
     args: argparse.Namespace
     tool: Avrdude
     image: Image
-    rows: dict[str, Row]
+    rows: dict[str, FlashRow]
     display: Display
     interrupted: bool = False
     answers: dict[str, Answer] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class _Flashing:
         return waiting
 
     def _write(self, names: Sequence[str]) -> None:
-        def report(name: str, news: Progress | Outcome) -> None:
+        def report(name: str, news: Progress | ProgramResult) -> None:
             if isinstance(news, Progress):
                 self.display.show(name, news)
             elif news.result == "flashed":
@@ -138,14 +138,16 @@ def run(args: argparse.Namespace) -> int:
                 f"no tile {args.only} is connected; `tilenca devices` lists what is, and "
                 "`tilenca devices --learn` finds out which tile is which"
             )
-    rows: dict[str, Row] = {}
+    rows: dict[str, FlashRow] = {}
     interrupted = False
     if boards:
         tool, image = find_avrdude(), _image(args)
-        rows = {board.port.name: Row(board.port.name, tile=board.tile, board=board.name) for board in boards}
+        rows = {
+            board.port.name: FlashRow(board.port.name, tile=board.tile, board=board.name) for board in boards
+        }
         interrupted = _program(args, tool, image, rows)
     absent = [
-        Row(None, "missing", 0.0, "not connected; connect it and flash again", place.tile, place.board)
+        FlashRow(None, "missing", 0.0, "not connected; connect it and flash again", place.tile, place.board)
         for place in missing
     ]
     everything = [*rows.values(), *absent]
@@ -185,7 +187,7 @@ def _image(args: argparse.Namespace) -> Image:
     return check_image(args.hex or FIRMWARE_HEX)
 
 
-def _program(args: argparse.Namespace, tool: Avrdude, image: Image, rows: dict[str, Row]) -> bool:
+def _program(args: argparse.Namespace, tool: Avrdude, image: Image, rows: dict[str, FlashRow]) -> bool:
     """Programs the boards and fills their rows in; whether it was interrupted."""
     number = f"{len(rows)} board{'s' * (len(rows) != 1)}"
     warn(f"image {image.path}: {image.size} bytes, firmware id {image.firmware_id:08X}")

@@ -12,11 +12,11 @@ from tilenca.commands.arguments import seed, whole
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import load_task
-from tilenca.simulator.simulator import Schedule
+from tilenca.simulator.simulator import ScheduleKind
 
 HISTORY_FILE = "history.csv"
 FILM_SUFFIXES = (".png", ".svg", ".gif")
-STEPS = 19
+FILM_STEPS = 19
 MAX_STEPS = 500
 
 
@@ -47,7 +47,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     film.add_argument("--shapes", type=Path, metavar="F", help="the file it is in (shapes/digits.toml)")
     film.add_argument(
-        "--steps", type=whole(1, MAX_STEPS), metavar="N", help=f"updates per tile ({STEPS}: twenty pictures)"
+        "--steps",
+        type=whole(1, MAX_STEPS),
+        metavar="N",
+        help=f"updates per tile ({FILM_STEPS}: twenty pictures)",
     )
     film.add_argument(
         "--schedule", choices=("random", "clock"), help="the paper's, or the tiles' own clocks (clock)"
@@ -121,9 +124,9 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
     shapes = args.shapes or paths.DEFAULT_SHAPES
     drawings = load_drawings([shapes], labels=model.labels)
     number = drawings.shapes.index(load_task(shapes).find(args.shape))
-    schedule: Schedule = args.schedule or "clock"
+    schedule: ScheduleKind = args.schedule or "clock"
     chance = 1 if args.seed is None else args.seed
-    film = record(model, drawings, number, args.steps or STEPS, schedule, chance)
+    film = record(model, drawings, number, args.steps or FILM_STEPS, schedule, chance)
     draw = draw_gif if args.film.suffix == ".gif" else draw_strip
     return {
         "file": str(args.film),
@@ -131,7 +134,7 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
         "shape": args.shape,
         "schedule": schedule,
         "seed": chance,
-        "steps": args.steps or STEPS,
+        "steps": args.steps or FILM_STEPS,
         "pictures": draw(film, args.film),
         "agreed_at": film.agreed_at,
     }

@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @dataclass
-class Row:
+class SettingRow:
     """What became of one tile; `hello` is what it said last of itself; without a port it is not connected."""
 
     port: str | None
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     listed = {board.port.name: board.tile for board in found.boards}
     # Opening its port may reset a tile: those that are known not to be meant are left in peace.
     rows = {
-        name: Row(name, tile)
+        name: SettingRow(name, tile)
         for name, tile in listed.items()
         if wanted is None or tile is None or tile in wanted
     }
@@ -72,13 +72,13 @@ def run(args: argparse.Namespace) -> int:
             _check_id(value, rows, _others(found, asked, rows))
         _set(reader, rows, args.name, value, order)
     if args.name in ("period", "preset"):
-        _compare_periods([asked.get(name) or Row(name, None) for name in listed])
+        _compare_periods([asked.get(name) or SettingRow(name, None) for name in listed])
     for port, row in rows.items():
         if listed[port] is None and row.hello:
             row.tile = row.hello.tile or None
         tell_contradiction(port, listed[port], row.hello)
     absent = [
-        Row(None, place.tile, "missing", f"not connected ({place.board}); connect it and set again")
+        SettingRow(None, place.tile, "missing", f"not connected ({place.board}); connect it and set again")
         for place in found.missing
         if wanted is None or place.tile in wanted
     ]
@@ -87,14 +87,14 @@ def run(args: argparse.Namespace) -> int:
     return 0 if all(row.result == "set" for row in everything) else 1
 
 
-def _others(found: Found, asked: dict[str, Row], chosen: dict[str, Row]) -> set[int | None]:
+def _others(found: Found, asked: dict[str, SettingRow], chosen: dict[str, SettingRow]) -> set[int | None]:
     """The ids of all tiles but the chosen ones, as far as they are known: by the file, and as tiles say."""
     others = [board for board in found.boards if board.port.name not in chosen]
     said = [row.hello.tile for board in others if (row := asked.get(board.port.name)) and row.hello]
     return {*said, *(board.tile for board in others), *(place.tile for place in found.missing)}
 
 
-def _check_id(value: int | str, rows: dict[str, Row], others: set[int | None]) -> None:
+def _check_id(value: int | str, rows: dict[str, SettingRow], others: set[int | None]) -> None:
     """Refuses to give two tiles the same id.
 
     Raises:
@@ -106,7 +106,7 @@ def _check_id(value: int | str, rows: dict[str, Row], others: set[int | None]) -
         raise UsageError(f"there is a tile {value} already; give that one another id first, or this one")
 
 
-def _compare_periods(rows: list[Row]) -> None:
+def _compare_periods(rows: list[SettingRow]) -> None:
     """Says if tiles of the fleet have different periods, or may have."""
     periods = {row.hello.period_ms if row.hello else None for row in rows}
     if len(periods) > 1:
@@ -118,7 +118,7 @@ def _compare_periods(rows: list[Row]) -> None:
         )
 
 
-def _known(reader: PortReader, rows: dict[str, Row], wanted: set[int] | None) -> dict[str, Row]:
+def _known(reader: PortReader, rows: dict[str, SettingRow], wanted: set[int] | None) -> dict[str, SettingRow]:
     """The rows of the tiles that are meant, with what each says of itself now.
 
     Raises:
@@ -136,7 +136,7 @@ def _known(reader: PortReader, rows: dict[str, Row], wanted: set[int] | None) ->
     return chosen
 
 
-def _set(reader: PortReader, rows: dict[str, Row], name: str, value: int | str, order: bytes) -> None:
+def _set(reader: PortReader, rows: dict[str, SettingRow], name: str, value: int | str, order: bytes) -> None:
     """Sets it in all tiles that answered, and asks each what is in force then."""
     speaking = {port: order for port, row in rows.items() if row.hello}
     replies = command_all(reader, speaking, "SET")
@@ -154,7 +154,7 @@ def _set(reader: PortReader, rows: dict[str, Row], name: str, value: int | str, 
         row.result = "set"
 
 
-def _print(rows: list[Row], as_json: bool) -> None:
+def _print(rows: list[SettingRow], as_json: bool) -> None:
     if as_json:
         print(json.dumps({"tiles": [_document(row) for row in rows]}, indent=2))
         return
@@ -165,10 +165,10 @@ def _print(rows: list[Row], as_json: bool) -> None:
     print(table(HEADER, lines))
 
 
-def _settings(row: Row) -> dict[str, int]:
+def _settings(row: SettingRow) -> dict[str, int]:
     return {name: getattr(row.hello, field) for name, field in FIELDS.items()} if row.hello else {}
 
 
-def _document(row: Row) -> dict[str, Any]:
+def _document(row: SettingRow) -> dict[str, Any]:
     about = {"port": row.port, "tile": row.tile, "result": row.result, "error": row.error}
     return {**about, "settings": _settings(row) or None}

@@ -16,7 +16,7 @@ from rich.live import Live
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.commands.arguments import count, seed, share, whole
-from tilenca.evaluation.metrics import settle_times
+from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.file import Shape
@@ -28,7 +28,7 @@ from tilenca.views.progress import Tell, show_progress
 from tilenca.views.table import table
 from tilenca.views.tiles import Picture, beside
 
-STEPS = 60
+DEFAULT_STEPS = 60
 RUNS = 100
 MAX_SIDE = 1000  # of an array
 MAX_THREADS = 256
@@ -60,9 +60,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="RxC",
         help="a full block of so many rows and columns of tiles instead",
     )
-    add("--steps", type=count, default=STEPS, metavar="N", help=f"updates per tile ({STEPS})")
+    add("--steps", type=count, default=DEFAULT_STEPS, metavar="N", help=f"updates per tile ({DEFAULT_STEPS})")
     add("--runs", type=count, metavar="N", help=f"runs per shape ({RUNS}; --array, --watch: 1)")
-    add("--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles' (clock)")
+    add(
+        "--schedule",
+        choices=("random", "clock"),
+        default="clock",
+        help="the paper's, or the tiles' clocks (clock)",
+    )
     add("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1 (0)")
     add(
         "--lost",
@@ -87,16 +92,16 @@ def run(args: argparse.Namespace) -> int:
     random = np.random.default_rng(args.seed)
     if args.watch:
         for number in numbers:
-            life = _simulator(args, model, drawings, np.array([number]), random)
-            _watch(life, drawings.shapes[number], model.labels, args.steps)
+            simulator = _simulator(args, model, drawings, np.array([number]), random)
+            _watch(simulator, drawings.shapes[number], model.labels, args.steps)
         return 0
     runs = args.runs or (1 if args.array else RUNS)
     reports = []
     with show_progress() as tell:
         for number in numbers:
             tell(drawings.shapes[number].name, 0.0, "laying out")
-            life = _simulator(args, model, drawings, np.full(runs, number), random)
-            reports.append(_report(args, life, drawings, number, tell))
+            simulator = _simulator(args, model, drawings, np.full(runs, number), random)
+            reports.append(_report(args, simulator, drawings, number, tell))
     if args.json:
         print(json.dumps(reports[0] if len(reports) == 1 else {"shapes": reports, **_speed(reports)}))
     else:
@@ -115,7 +120,7 @@ def _sides(text: str) -> tuple[int, int]:
 
 
 def _check_combinations(args: argparse.Namespace) -> None:
-    """Refuses what would be ignored; what excludes each other by itself, argparse knows."""
+    """Refuses options that would be ignored; argparse refuses those that exclude each other."""
     if args.array and args.shapes:
         raise UsageError("--shapes does nothing with --array; leave one out")
     if args.array and args.watch:
@@ -129,7 +134,7 @@ def _drawings(args: argparse.Namespace, model: Model) -> Drawings:
 
 
 def _block(model: Model, rows: int, cols: int) -> Drawings:
-    """A block has no label: whether its tiles are right is not asked."""
+    """A full block of tiles; it has no class, so no tile of it is right or wrong."""
     shape = Shape(model.labels[0], ("#" * cols,) * rows, f"{rows}x{cols}")
     return Drawings((shape,), (0,), model.labels, ({"file": "", "sha256": ""},))
 
@@ -157,7 +162,7 @@ def _simulator(
 
 
 def _report(
-    args: argparse.Namespace, life: Simulator, drawings: Drawings, number: int, tell: Tell
+    args: argparse.Namespace, simulator: Simulator, drawings: Drawings, number: int, tell: Tell
 ) -> dict[str, Any]:
     name, steps = drawings.shapes[number].name, args.steps
 
@@ -166,27 +171,27 @@ def _report(
 
     started_s = time.perf_counter()
     tell_step(0)
-    course = life.run(steps, tell=tell_step)
+    trajectory = simulator.run(steps, tell=tell_step)
     seconds = time.perf_counter() - started_s
-    shown = life.shown[life.alive]
+    shown = simulator.shown[simulator.alive]
     right: dict[str, Any] = {
-        "cells_right": round(float(course.right[-1].mean()), 6),
-        "total_agreement": round(float(course.agreed[-1].mean()), 6),
-        "steps_to_agreement": settle_times(course.settled),
+        "cells_right": round(float(trajectory.right[-1].mean()), 6),
+        "total_agreement": round(float(trajectory.agreed[-1].mean()), 6),
+        "steps_to_agreement": convergence_times(trajectory.converged_at),
     }
     return {
         "shape": name,
         "file": drawings.sources[drawings.groups[number]]["file"],
         "tiles": len(drawings.shapes[number].cells),
         "steps": steps,
-        "runs": len(life.batch.starts),
+        "runs": len(simulator.batch.starts),
         **(dict.fromkeys(right) if args.array else right),
         "shown": {
             label: round(float((shown == index).mean()), 6)
             for index, label in enumerate(drawings.labels)
             if (shown == index).any()
         },
-        **_speed([{"cell_updates": life.updates, "seconds": seconds}]),
+        **_speed([{"cell_updates": simulator.updates, "seconds": seconds}]),
     }
 
 
@@ -229,27 +234,27 @@ def _steps(count: int) -> str:
 
 
 def picture_of(shape: Shape, labels: tuple[str, ...], shown: NDArray[np.int8]) -> Picture:
-    """The drawing with what its tiles show, a class each, `DARK` for nothing."""
+    """The drawing with the class that each tile shows, `DARK` for none."""
     segments = tuple(BLANK if k == DARK else glyph(labels[k]) for k in shown)
     return Picture(shape, segments, tuple((0, 0, 0) if k == DARK else colour_of_class(int(k)) for k in shown))
 
 
-def _watch(life: Simulator, shape: Shape, labels: tuple[str, ...], steps: int) -> None:
-    """Lives in the pace of real tiles, and shows it; one plain line per change where there is no terminal."""
+def _watch(simulator: Simulator, shape: Shape, labels: tuple[str, ...], steps: int) -> None:
+    """Runs at the pace of real tiles, and shows it; one plain line per change where there is no terminal."""
     console = Console(highlight=False)
     started_s = time.monotonic()
     with ExitStack() as stack:
         live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
         for step in range(1, steps + 1):
-            before = life.shown.copy()
-            right = float(life.run(1).right[0, 0])
+            before = simulator.shown.copy()
+            right = float(simulator.run(1).right[0, 0])
             if live is not None:
-                picture = picture_of(shape, labels, life.shown)
+                picture = picture_of(shape, labels, simulator.shown)
                 live.update(beside([picture], console, console.width, console.height), refresh=True)
                 time.sleep(max(0.0, started_s + step * STEP_S - time.monotonic()))
             else:
-                for tile in np.flatnonzero(life.shown != before):
-                    now = life.shown[tile]
+                for tile in np.flatnonzero(simulator.shown != before):
+                    now = simulator.shown[tile]
                     what = "nothing" if now == DARK else labels[now]
                     print(f"step {step:4}  {shape.name}: tile {tile + 1} shows {what}")
     print(f"{shape.name}: {right:.0%} of the living tiles show {shape.label} after {_steps(steps)}")

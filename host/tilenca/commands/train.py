@@ -16,7 +16,7 @@ from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, seed, whole
-from tilenca.evaluation.suites import set_exam
+from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
 from tilenca.model.file import MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tilenca.training.runner import Job
     from tilenca.training.trainer import Trained
 
-EXAM_SEED = 1_000_000  # more than any seed of training that anybody types, so that chance is another
+SUITE_SEED = 1_000_000  # larger than any usual --seed, so that training never draws the same numbers
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
@@ -96,8 +96,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @dataclass(frozen=True)
-class Plan:
-    """What the arguments ask for.
+class TrainingPlan:
+    """The training that the arguments ask for.
 
     Attributes:
         task: the drawings of the files, with the model's labels.
@@ -141,7 +141,7 @@ def run(args: argparse.Namespace) -> int:
     jobs = [
         Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
     ]
-    made = {
+    metadata = {
         "command": _command(args),
         "shapes": [_place(path) for path in args.shapes],
         "commit": _commit(),
@@ -156,15 +156,15 @@ def run(args: argparse.Namespace) -> int:
         warn(failure)
     try:
         trained = _best(jobs, args.seed)
-        model, cut = model_of(trained, {**made, **trained.config.as_json()})
-        # Other runs and other random drawings than those that decided when to stop, and for which seed.
-        exam_seed = EXAM_SEED + args.seed
-        exam = set_exam(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), exam_seed)
-        metrics = validate(FastEngine(model), exam, plan.validation_runs, exam_seed, warn)
+        model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
+        # Other runs and other random drawings than those that decided when to stop, and which seed is best.
+        suite_seed = SUITE_SEED + args.seed
+        suite = make_suite(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), suite_seed)
+        metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, warn)
     except KeyboardInterrupt:
         raise _interrupted(args, "while measuring the trained model") from None
     metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
-    metrics["kept"] = trained.kept
+    metrics["best_iteration"] = trained.best_iteration
     result = Result(model, metrics, trained.history, trained.checks)
     where = keep(args.out, result)
     _draw_history(where, result)
@@ -184,7 +184,7 @@ def _draw_history(where: Path, result: "Result") -> None:
         plot_history(rows, where / "history.png", columns, title)
 
 
-def _plan(args: argparse.Namespace) -> Plan:
+def _plan(args: argparse.Namespace) -> TrainingPlan:
     recipe = find_recipe(args.recipe)
     if args.iterations is not None:
         recipe = replace(recipe, iterations=args.iterations)
@@ -194,11 +194,11 @@ def _plan(args: argparse.Namespace) -> Plan:
     labels = labels_of(task, recipe, dimensions.max_classes)
     seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
     runs = args.validation_runs or recipe.validation_runs
-    return Plan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
+    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
 
 
-def _announce(plan: Plan, fits: cost.Fit) -> None:
-    """Says what will be trained, whether tiles can run it, and what nobody could tell apart."""
+def _announce(plan: TrainingPlan, fits: cost.Fit) -> None:
+    """Prints the plan, the cost on a tile, and the drawings that look alike when damaged."""
     warn(str(fits))
     if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
         warn(
@@ -217,7 +217,7 @@ def _announce(plan: Plan, fits: cost.Fit) -> None:
     )
 
 
-def _check_out(args: argparse.Namespace, plan: Plan) -> None:
+def _check_out(args: argparse.Namespace, plan: TrainingPlan) -> None:
     unfinished = bool(checkpoints(args.out))
     if (args.out / "model.json").exists() and not (args.resume or args.force):
         raise UsageError(f"{args.out}: holds a model already; give another --out, or --force to replace it")
@@ -236,15 +236,15 @@ def _check_out(args: argparse.Namespace, plan: Plan) -> None:
         raise UsageError(f"{args.out}: cannot write there ({error.strerror}); give another --out") from error
 
 
-def _best(jobs: "list[Job]", exam_seed: int) -> "Trained":
-    """Of what was trained to its end, that which falls short of its targets least."""
-    from tilenca.evaluation.metrics import Examiner
+def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
+    """The finished run with the least shortfall."""
+    from tilenca.evaluation.metrics import Evaluator
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.trainer import model_of, trained_at
 
     finished = []
     for job in jobs:
-        with suppress(UsageError):  # what is missing or damaged has been told of
+        with suppress(UsageError):  # a failure of this run has been reported already
             finished.append(trained_at(job.checkpoint, job.config))
     finished = [trained for trained in finished if trained.done]
     if not finished:
@@ -254,8 +254,10 @@ def _best(jobs: "list[Job]", exam_seed: int) -> "Trained":
     shortfalls = []
     for trained in finished:
         model, _ = model_of(trained, {})
-        exam = set_exam(jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), exam_seed)
-        rows = Examiner(FastEngine(model), exam, SELECTION_RUNS, exam_seed).short_rows()
+        suite = make_suite(
+            jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), suite_seed
+        )
+        rows = Evaluator(FastEngine(model), suite, SELECTION_RUNS, suite_seed).short_rows()
         shortfalls.append(sum(row.shortfall for row in rows))
         warn(f"seed {trained.config.seed}: short of its targets by {shortfalls[-1]:.4f} in all")
     return finished[shortfalls.index(min(shortfalls))]

@@ -1,4 +1,4 @@
-"""One drawing laid out in emulated tiles, switched on, and listened to until it has made up its mind.
+"""One drawing on emulated tiles: lays it out, switches it on, and reads its telemetry until it has converged.
 
 `tilenca.emulator` knows boards and cables; this module knows shapes, settings and telemetry.
 """
@@ -33,7 +33,7 @@ FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
 @dataclass(frozen=True)
-class Conditions:
+class EmulationSettings:
     """How tiles are switched on and for how long they run.
 
     Attributes:
@@ -42,9 +42,9 @@ class Conditions:
         period_ms: written into each tile's settings; None: the firmware's own.
         ppm: clock errors are uniform in -ppm..ppm.
         boot_spread_s: tiles are switched on at times uniform in 0..boot_spread_s.
-        seed: decides both; each shape draws its own.
+        seed: of both; each shape draws its own.
         bootloader: image that tiles start in; None: none.
-        faults: what goes wrong.
+        faults: to inject.
         threads: how many share the work; they change nothing else.
         eeprom: directory with an EEPROM's contents for each tile that has a file there; None: none.
     """
@@ -63,7 +63,7 @@ class Conditions:
 
 @dataclass
 class _Voice:
-    """What one tile has said so far."""
+    """The sentences of one tile so far."""
 
     reader: LineReader = field(default_factory=LineReader)
     reports: list[TileSentence] = field(default_factory=list)
@@ -106,7 +106,7 @@ class Emulation:
     """The tiles of one shape, running."""
 
     def __init__(
-        self, task: Task, shape: Shape, elf: Path, conditions: Conditions, defaults: Settings | None
+        self, task: Task, shape: Shape, elf: Path, settings: EmulationSettings, defaults: Settings | None
     ) -> None:
         """Wires the tiles and writes their settings; nothing runs yet.
 
@@ -114,31 +114,31 @@ class Emulation:
             task: the file the shape is of; its labels tell "5" from "S".
             shape: what to lay out.
             elf: the firmware image.
-            conditions: how to switch it on.
+            settings: how to switch it on.
             defaults: what `firmware_settings` said; with None tiles get no settings and no number.
 
         Raises:
             BuildError, UsageError: the image cannot be used, or the emulator is not built.
             UsageError: a fault is of a tile or cable that there is not, or an EEPROM file cannot be used.
         """
-        self.task, self.shape, self.conditions = task, shape, conditions
+        self.task, self.shape, self.settings = task, shape, settings
         count = len(shape.cells)
-        draw = random.Random(f"{conditions.seed} {shape.name}")
-        self.ppm = [draw.uniform(-conditions.ppm, conditions.ppm) for _ in range(count)]
-        self.switch_on_s = [draw.uniform(0.0, conditions.boot_spread_s) for _ in range(count)]
+        draw = random.Random(f"{settings.seed} {shape.name}")
+        self.ppm = [draw.uniform(-settings.ppm, settings.ppm) for _ in range(count)]
+        self.switch_on_s = [draw.uniform(0.0, settings.boot_spread_s) for _ in range(count)]
         self.cables = links = cables(shape)
         self.array = Array(
-            elf, count, links, self.ppm, self.switch_on_s, conditions.bootloader, conditions.threads
+            elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads
         )
-        self._faults = Faults(self.array, links, conditions.seed)
-        for spec in conditions.faults:
+        self._faults = Faults(self.array, links, settings.seed)
+        for spec in settings.faults:
             self._faults.add(spec)
-        self.period_ms = conditions.period_ms or (defaults.period_ms if defaults else None)
+        self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [_Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # what the firmware says of itself, the same from every tile
         for tile in self.array:
-            kept = conditions.eeprom and load_eeprom(tile, conditions.eeprom)
-            if self.period_ms is not None and (not kept or conditions.period_ms is not None):
+            kept = settings.eeprom and load_eeprom(tile, settings.eeprom)
+            if self.period_ms is not None and (not kept or settings.period_ms is not None):
                 updates = defaults.updates if defaults else 0
                 tile.write_eeprom(0, settings_block(tile.index + 1, self.period_ms, updates))
 
@@ -158,7 +158,7 @@ class Emulation:
             TilencaError: a tile stopped at a fault of its program.
         """
         for tile in self._faults.run(seconds):
-            self._voices[tile].reports.clear()  # what it said in its life before counts no more
+            self._voices[tile].reports.clear()  # its sentences before the reset no longer count
             self.switch_on_s[tile] = self._faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
@@ -181,13 +181,13 @@ class Emulation:
 
     def share_done(self) -> float:
         """How much of the run is done, 0 to 1; in updates, those of the least advanced tile."""
-        if self.conditions.seconds is not None:
-            return min(self.array.time_s / self.conditions.seconds, 1.0)
+        if self.settings.seconds is not None:
+            return min(self.array.time_s / self.settings.seconds, 1.0)
         done = min(map(self._updates, self._standing()), default=0)
-        return min(done / self.conditions.updates, 1.0)
+        return min(done / self.settings.updates, 1.0)
 
     def done(self) -> bool:
-        """Whether it has run for as long as its conditions ask."""
+        """Whether it has run for as long as its settings ask."""
         return self.share_done() >= 1.0
 
     def run(self, on_slice: Callable[["Emulation", list[Heard]], None]) -> None:
@@ -202,18 +202,16 @@ class Emulation:
                 slowest = min(self._standing(), key=self._updates, default=0)
                 raise TilencaError(
                     f"shape '{self.shape.name}': tile {slowest + 1} told of {self._updates(slowest)} updates "
-                    f"in {limit_s:.1f} s, {self.conditions.updates} were asked for; give --seconds to run on"
+                    f"in {limit_s:.1f} s, {self.settings.updates} were asked for; give --seconds to run on"
                 )
-            left_s = (
-                SLICE_S if self.conditions.seconds is None else self.conditions.seconds - self.array.time_s
-            )
+            left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
             on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))
 
     def _limit_s(self) -> float:
-        if self.conditions.seconds is not None:
+        if self.settings.seconds is not None:
             return float("inf")
-        expected_s = self.conditions.updates * (self.period_ms or 0) / 1000
-        return self.conditions.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
+        expected_s = self.settings.updates * (self.period_ms or 0) / 1000
+        return self.settings.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
 
     def _standing(self) -> list[int]:
         """The tiles that have power; no more is asked of the others."""

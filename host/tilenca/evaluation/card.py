@@ -13,34 +13,34 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         model: the model.
         metrics: what `tilenca.evaluation.metrics.validate` returned for it.
     """
-    size, made = model.dimensions, model.made
-    files = ", ".join(f"`{source['file']}`" for source in made["sources"])
+    size, metadata = model.dimensions, model.metadata
+    files = ", ".join(f"`{source['file']}`" for source in metadata["sources"])
     ending = (
-        f"ended after {metrics['iterations']} of {made['recipe']['iterations']} iterations, since all "
+        f"ended after {metrics['iterations']} of {metadata['recipe']['iterations']} iterations, since all "
         "targets held"
         if metrics["ended_early"]
-        else f"{made['recipe']['iterations']} iterations"
+        else f"{metadata['recipe']['iterations']} iterations"
     )
-    if metrics["kept"] != metrics["iterations"]:
-        ending += f", of which what was measured best is kept, after {metrics['kept']}"
+    if metrics["best_iteration"] != metrics["iterations"]:
+        ending += f"; these are the best measured weights, of iteration {metrics['best_iteration']}"
     lines = [
         f"# Model {model.model_id:04X}: {' '.join(model.labels)}",
         "",
         f"Tells {len(model.labels)} classes apart. State of {size.channels} channels, hidden layers of "
         f"{size.hidden1} and {size.hidden2}, int8 weights, arithmetic of docs/PROTOCOL.md section 4. "
-        "`model.json` says what it is, `weights.npz` holds real and integer weights, `metrics.json` every "
-        "number below, `history.csv` the course of training (`tilenca plot` draws it).",
+        "`model.json` describes it, `weights.npz` holds real and integer weights, `metrics.json` every "
+        "number below, `history.csv` the history of training (`tilenca plot` draws it).",
         "",
         f"On a tile: {cost.check(size, len(model.labels))}",
         "",
         "## How it was made",
         "",
-        f"Recipe `{made['recipe_name']}` ({ending}), seed {made['seed']}, trained on {files}, "
-        f"at commit {made['commit']}.",
+        f"Recipe `{metadata['recipe_name']}` ({ending}), seed {metadata['seed']}, trained on {files}, "
+        f"at commit {metadata['commit']}.",
         "",
         "To make it again, to the byte on the same PyTorch and processor:",
         "",
-        f"    {made['command']}",
+        f"    {metadata['command']}",
         "",
         "![loss and agreement over the iterations](history.png)",
         "",
@@ -48,19 +48,19 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "",
         f"The firmware's own integers, {metrics['runs_per_drawing']} runs of every drawing in the main rows. "
         "A step is one update per tile; a run counts when *every* tile shows the right class after the steps "
-        "of the second column. Where a row does not say otherwise, tiles live on their own clocks: each has "
+        "of the second column. Where a row does not say otherwise, tiles run on their own clocks: each has "
         "a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, and all are switched on "
         "within 10 periods; steps count from the last one. Intervals are Wilson's, for these drawings. "
-        "Targets of 1.000 mean that it rounds to that. What was held out of training helped to choose "
-        "when to stop, with other runs and other random drawings than these. To measure it again:",
+        "A target of 1.000 holds where the share rounds to 1.000. Drawings held out of training helped to "
+        "choose when to stop, with other runs and other random drawings than these. To measure it again:",
         "",
-        f"    tilenca evaluate --exam --model DIR --shapes {' '.join(made['shapes'])} "
+        f"    tilenca evaluate --suite --model DIR --shapes {' '.join(metadata['shapes'])} "
         f"--runs {metrics['runs_per_drawing']} --seed {metrics['seed']}",
         "",
         f"{metrics['targets_held']} targets held.",
         "",
         "| what | after steps | drawings | runs | all tiles right | 95 % interval | "
-        "worst drawing | settled: median, 95 % | target |",
+        "worst drawing | converged: median, 95 % | target |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     lines += [_row(row) for row in metrics["rows"]]
@@ -81,7 +81,9 @@ def _row(row: dict[str, Any]) -> str:
         f"{row['share']:.4f}",
         f"{row['low']:.4f} to {row['high']:.4f}",
         f"`{row['worst']['shape']}` {row['worst']['share']:.3f}",
-        f"{_time(row['settle']['median'])}, {_time(row['settle']['p95'])}" if row["settle"] else "",
+        f"{_time(row['convergence']['median'])}, {_time(row['convergence']['p95'])}"
+        if row["convergence"]
+        else "",
         target,
     )
     return f"| {' | '.join(cells)} |"

@@ -1,6 +1,6 @@
-"""What a model is asked: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
+"""Test suites: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
 
-Where a paper says that training never saw its drawings, that is so: sizes and unknown drawings held out.
+Training never sees the drawings of a case that is `held_out`: certain sizes and unknown drawings.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,8 +21,8 @@ SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 
 
 @dataclass(frozen=True)
-class Paper:
-    """One set of drawings to ask about.
+class Case:
+    """One set of drawings to measure.
 
     Attributes:
         kind: decides the target, see `tilenca.evaluation.metrics.TARGETS`.
@@ -42,33 +42,33 @@ class Paper:
 
 
 @dataclass(frozen=True)
-class Exam:
+class Suite:
     """All sets of a task.
 
     Attributes:
-        drawn: the drawings of the files, one paper for each.
+        drawn: the drawings of the files, one case for each.
         sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone
-            and without what stretching to a trained size gives as well (a line has no width).
+            and without drawings that are also those of a trained size (a line has no width).
         damaged: one tile missing where that leaves no doubt about the class; None: no such case.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
     """
 
-    drawn: tuple[Paper, ...]
-    sizes: tuple[Paper, ...]
-    damaged: Paper | None
-    unknown: tuple[Paper, ...]
-    larger: tuple[Paper, ...]
+    drawn: tuple[Case, ...]
+    sizes: tuple[Case, ...]
+    damaged: Case | None
+    unknown: tuple[Case, ...]
+    larger: tuple[Case, ...]
 
 
 @dataclass(frozen=True)
 class Aims:
-    """What a model was trained for, beside the drawings of the files.
+    """The aims of a training, beside the drawings of the files.
 
     Attributes:
         stretch: largest factor of the drawn size.
         damaged: whether tiles may be missing.
-        unknown: whether to say so of drawings of no class.
+        unknown: whether tiles show a dash on drawings of no class.
     """
 
     stretch: float = 1.0
@@ -76,20 +76,20 @@ class Aims:
     unknown: bool = False
 
 
-def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Exam:
-    """Sets the exam of a task.
+def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Suite:
+    """Makes the suite of a task.
 
     Args:
         task: the drawings of its files.
         sizes: of the task.
         labels: the model's.
-        aims: what it was trained for.
+        aims: of its training.
         seed: of the unknown drawings.
     """
     task = replace(task, labels=labels)
     first = task.group(0)
     drawn = tuple(
-        Paper("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
+        Case("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
     known = Known((shape.label, shape.rows) for shape in task.shapes)
@@ -98,11 +98,11 @@ def set_exam(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, 
         for shape in first
         for rows in known.damaged(shape.label, shape.rows)
     ]
-    return Exam(
+    return Suite(
         drawn,
-        tuple(_size_papers(task, first, sizes, sizes.within(task.largest, aims.stretch))),
-        Paper("damaged", "one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
-        tuple(_unknown_papers(task, first, known, aims, seed)) if UNKNOWN in labels else (),
+        tuple(_size_cases(task, first, sizes, sizes.within(task.largest, aims.stretch))),
+        Case("damaged", "one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
+        tuple(_unknown_cases(task, first, known, aims, seed)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
     )
 
@@ -116,16 +116,16 @@ def _steps(size: Size) -> int:
     return SHORT_STEPS if area <= LARGE else LARGE_STEPS if area <= VERY_LARGE else VERY_LARGE_STEPS
 
 
-def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Paper]:
+def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Case]:
     trained = _distinct(shape for size in aimed.trained for shape in _at_size(first, size))
     trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
     if trained:
-        yield Paper("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
+        yield Case("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     for path in sizes.drawn:
         drawings = load_drawings([path], labels=task.labels)
-        yield Paper("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+        yield Case("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
     seen = {shape.rows for shape in task.shapes} | {
         other.rows
         for shape in first
@@ -135,9 +135,9 @@ def _size_papers(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Si
     }
     for size in new:
         if shapes := [shape for shape in _distinct(_at_size(first, size)) if shape.rows not in seen]:
-            # Half as large again as what was trained on is asked of a model, not more.
+            # The aim is sizes up to half as large again as the trained ones, not more.
             steps = _steps(size)
-            yield Paper(
+            yield Case(
                 "held out" if steps <= LARGE_STEPS else "very large",
                 f"{size_name(size)}, never trained on",
                 task.of(shapes),
@@ -153,17 +153,17 @@ def _larger_sizes(task: Drawings, sizes: Sizes) -> list[Size]:
     return [size for size in sizes.trained if size[0] >= 1.4 * height and size[1] >= 1.4 * width]
 
 
-def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Paper]:
+def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Case]:
     """A larger size, and the largest."""
     wanted = _larger_sizes(task, sizes)
     for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
         kind = "drawn" if _steps(size) <= SHORT_STEPS else "trained"
-        yield Paper(kind, size_name(size), task.of(_at_size(first, size)), _steps(size))
+        yield Case(kind, size_name(size), task.of(_at_size(first, size)), _steps(size))
 
 
-def _unknown_papers(
+def _unknown_cases(
     task: Drawings, first: Sequence[Shape], known: Known, aims: Aims, seed: int
-) -> Iterable[Paper]:
+) -> Iterable[Case]:
     random = np.random.default_rng(seed)
     drawings = [shape.rows for shape in first]
 
@@ -178,7 +178,7 @@ def _unknown_papers(
         if found := variants.draw_until(wanted, draw, fits):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
             label = f"no class: {name}, never trained on"
-            yield Paper(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
+            yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
 
 
 def _distinct(shapes: Iterable[Shape]) -> list[Shape]:

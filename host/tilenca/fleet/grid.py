@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
-from tilenca.base.sides import SIDES, STEPS
+from tilenca.base.sides import OFFSETS, SIDES
 from tilenca.fleet.boards import Found
 from tilenca.fleet.layout import arrange
 from tilenca.fleet.link_health import FAILING
@@ -175,7 +175,7 @@ def _marked(cell: Cell, place: Position, grid: Mapping[Position, Cell], fleet: F
     if not cell.marks or cell.trouble:
         return cell
     marks = dict(cell.marks)
-    for side, (down, right) in zip(SIDES, STEPS, strict=True):
+    for side, (down, right) in zip(SIDES, OFFSETS, strict=True):
         beside = grid.get((place[0] + down, place[1] + right))
         speaks = beside is not None and beside.label is not None and not beside.trouble
         if marks[side] is Mark.NONE and speaks:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tilenca.base.sides import SIDES, STEPS, opposite
+from tilenca.base.sides import OFFSETS, SIDES, opposite
 
 # Per tile, per side letter: the neighbour's id and the letter of its side that faces us.
 Neighbours = Mapping[int, Mapping[str, tuple[int, str]]]
@@ -55,7 +55,7 @@ def _grow(first: int, neighbours: Neighbours, conflicts: list[str]) -> dict[int,
         tile = edge.pop(0)
         row, col = group[tile]
         for side, other in _joined(tile, neighbours, conflicts):
-            down, right = STEPS[SIDES.index(side)]
+            down, right = OFFSETS[SIDES.index(side)]
             cell = row + down, col + right
             if group.get(other, cell) != cell:
                 conflicts.append(f"tile {other} is on side {side} of tile {tile}, and elsewhere too")

@@ -30,7 +30,7 @@ PHASES = ("connecting", "writing", "verifying")
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ProgramResult:
     """What became of one board.
 
     Attributes:
@@ -99,16 +99,16 @@ class Run:
             NO_REPLY if phase == "connecting" else f"silent while {phase}; reconnect it and flash it again"
         )
 
-    def finish(self) -> Outcome:
+    def finish(self) -> ProgramResult:
         """Waits for the end of the process and says what became of the board."""
         status = self._process.wait()
         self.stream.close()
         seconds = round(time.monotonic() - self.started_s, 2)
         phase = self.output.progress.phase
         if self._failure is None and status == 0:
-            return Outcome(self.port, "flashed", seconds, phase=phase)
+            return ProgramResult(self.port, "flashed", seconds, phase=phase)
         reason = self._failure or self.output.reason(self.port)
-        return Outcome(self.port, "failed", seconds, reason, 0, phase, self.output.passing)
+        return ProgramResult(self.port, "failed", seconds, reason, 0, phase, self.output.passing)
 
 
 def program_all(
@@ -117,8 +117,8 @@ def program_all(
     names: Sequence[str],
     jobs: int,
     timeout_s: float,
-    report: Callable[[str, Progress | Outcome], None],
-) -> list[Outcome]:
+    report: Callable[[str, Progress | ProgramResult], None],
+) -> list[ProgramResult]:
     """Programs the boards at `names`, at most `jobs` at a time; one that fails does not stop the others.
 
     Args:
@@ -142,7 +142,7 @@ def program_all(
     except KeyboardInterrupt:
         begun = {outcome.port: outcome for outcome in fleet.stop()}
         for name in fleet.pending(names):
-            before = begun.get(name, Outcome(name, "failed", 0.0))
+            before = begun.get(name, ProgramResult(name, "failed", 0.0))
             fleet.outcomes[name] = replace(before, result="interrupted", error="interrupted; flash it again")
     finally:
         fleet.stop()
@@ -153,14 +153,18 @@ class _Fleet:
     """The runs now going, and the outcomes so far."""
 
     def __init__(
-        self, tool: Avrdude, image: Path, timeout_s: float, report: Callable[[str, Progress | Outcome], None]
+        self,
+        tool: Avrdude,
+        image: Path,
+        timeout_s: float,
+        report: Callable[[str, Progress | ProgramResult], None],
     ) -> None:
-        self.outcomes: dict[str, Outcome] = {}
+        self.outcomes: dict[str, ProgramResult] = {}
         self.runs: dict[str, tuple[Run, ExitStack]] = {}
         self._tool, self._image, self._timeout_s, self._report = tool, image, timeout_s, report
         self._selector = selectors.DefaultSelector()
         self._attempts: Counter[str] = Counter()
-        self._before: dict[str, Outcome] = {}
+        self._before: dict[str, ProgramResult] = {}
 
     def start(self, name: str) -> None:
         """Starts on a board, unless it is plain that it would fail."""
@@ -169,12 +173,12 @@ class _Fleet:
             descriptor = lock.enter_context(port_lock(name, "tilenca flash"))
         except PortBusyError as busy:
             self._done(
-                Outcome(name, "failed", 0.0, f"busy: {busy} has it open; close that, then flash again")
+                ProgramResult(name, "failed", 0.0, f"busy: {busy} has it open; close that, then flash again")
             )
             return
         if problem := _obstacle(name):
             lock.close()
-            self._done(Outcome(name, "failed", 0.0, problem))
+            self._done(ProgramResult(name, "failed", 0.0, problem))
             return
         self._attempts[name] += 1
         with held_back():
@@ -221,11 +225,11 @@ class _Fleet:
         """Those that have no outcome yet, wherever an interrupt found them."""
         return [name for name in names if name not in self.outcomes]
 
-    def _done(self, outcome: Outcome) -> None:
+    def _done(self, outcome: ProgramResult) -> None:
         self.outcomes[outcome.port] = outcome
         self._report(outcome.port, outcome)
 
-    def stop(self) -> list[Outcome]:
+    def stop(self) -> list[ProgramResult]:
         """Ends all that still run; returns what had become of them."""
         stopped = []
         for run, lock in self.runs.values():
@@ -239,7 +243,7 @@ class _Fleet:
         return stopped
 
 
-def _both(first: Outcome, second: Outcome) -> Outcome:
+def _both(first: ProgramResult, second: ProgramResult) -> ProgramResult:
     """What two attempts come to: where both failed, the one that came further says why."""
     seconds = round(first.seconds + second.seconds, 2)
     further = PHASES.index(first.phase) > PHASES.index(second.phase)

@@ -1,9 +1,9 @@
-"""Whether a network fits a tile, known from its widths alone and so before it is trained.
+"""Whether a network fits a tile, computed from its widths alone and so before it is trained.
 
-    print(fit.check(Dimensions(37, 64, 64), classes=26))
+    print(cost.check(Dimensions(37, 64, 64), classes=26))
 
 Flash holds the weights; SRAM is the same for all networks, since the firmware's buffers are sized for the
-widest; what a wider network costs is time.
+widest. A wider network costs time.
 """
 
 import configparser
@@ -50,13 +50,13 @@ HEAD_ROOM = 0.08
 
 @dataclass(frozen=True)
 class Fit:
-    """What a network costs a tile; `str()` of it is one line for people.
+    """The cost of a network on a tile; `str()` of it is one line for people.
 
     Attributes:
         macs: multiplications of one update.
         flash_bytes: weights, biases and looks.
-        buffer_bytes: what it uses of the buffers in SRAM.
-        sram_bytes: what the firmware takes of SRAM with any network, stack included.
+        buffer_bytes: bytes that it uses of the buffers in SRAM.
+        sram_bytes: bytes of SRAM that the firmware takes with any network, stack included.
         update_cycles: clock cycles that one update costs, all told, whatever the period, with ACTIVE inputs.
         shortest_period_ms: the shortest period that leaves HEAD_ROOM of the chip's and the lines' time free.
         period_ms: the period it is to run at.
@@ -124,7 +124,7 @@ def macs(size: Dimensions) -> int:
 
 
 def layer_bytes(size: Dimensions) -> list[int]:
-    """Bytes of flash that each layer takes: weights and biases of whole passes."""
+    """Bytes of flash that each layer takes: weights and biases of whole blocks."""
     weights = (shape for name, shape in size.shapes().items() if name.startswith("w"))
     return [packing.layer_bytes(inputs, outputs) for outputs, inputs in weights]
 
@@ -148,9 +148,9 @@ def buffer_bytes(size: Dimensions) -> int:
     """
     channels = size.channels
     cell = 2 * channels + 5 * channels
-    # Whole passes, and at least one byte behind the last activation.
+    # Whole blocks, and at least one byte behind the last activation.
     hidden = sum(
-        (width // packing.PASS_OUTPUTS + 1) * packing.PASS_OUTPUTS for width in (size.hidden1, size.hidden2)
+        (width // packing.BLOCK_OUTPUTS + 1) * packing.BLOCK_OUTPUTS for width in (size.hidden1, size.hidden2)
     )
     links = 4 * (channels + (HEADER_SIZE + channels + CRC_SIZE + 1))
     toggles = -(-frame_bytes(channels) * BITS_PER_BYTE // TOGGLES_PER_BYTE) + 1

@@ -1,7 +1,7 @@
 """A trained model on disk, readable without torch.
 
-A model is a directory: `model.json` (what it is), `weights.npz` (float and integer weights), and beside them
-`metrics.json` and `README.md` (the model card), which nothing reads back.
+A model is a directory: `model.json` (its description), `weights.npz` (float and integer weights), and beside
+them `metrics.json` and `README.md` (the model card), which no program needs.
 """
 
 import json
@@ -17,20 +17,23 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_MODEL
+from tilenca.model import format_1
 from tilenca.protocol.checksums import crc16
 from tilenca.protocol.constants import MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
 from tilenca.shapes.glyphs import GLYPHS
 
-FORMAT = 1
-TAPS = 5  # own state, then N, E, S, W
+FORMAT = 2
+READABLE = (1, FORMAT)
+ID_VERSION = 1  # of the bytes that the model id is computed from
+NEIGHBOURHOOD = 5  # von Neumann's: own state, then N, E, S, W
 # For each array of weights: how many steps 1.0 has in the integer tile, and its largest value there.
-STEPS = {"w1": 64, "w2": 64, "w3": 128, "b1": 4096, "b2": 4096, "b3": 8192}
+SCALES = {"w1": 64, "w2": 64, "w3": 128, "b1": 4096, "b2": 4096, "b3": 8192}
 LARGEST = {"w1": 127, "w2": 127, "w3": 127, "b1": 32767, "b2": 32767, "b3": 32767}
 MAX_WIDTH = 127
 
 
 def checkpoint_path(directory: Path, seed: int) -> Path:
-    """What a training run with this seed leaves in a model's directory until it is finished."""
+    """The file of an unfinished training run with this seed, in a model's directory."""
     return directory / f"checkpoint-{seed}.pt"
 
 
@@ -39,7 +42,7 @@ def checkpoints(directory: Path) -> list[Path]:
     return sorted(directory.glob("checkpoint-*.pt"))
 
 
-# All that numpy and zipfile raise on bytes that are no archive of arrays.
+# All exceptions of numpy and zipfile on bytes that are no archive of arrays.
 DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error)
 
 
@@ -54,7 +57,7 @@ class Dimensions:
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of every weight array, by name, in the order they are stored and hashed."""
         return {
-            "w1": (self.hidden1, TAPS * self.channels),
+            "w1": (self.hidden1, NEIGHBOURHOOD * self.channels),
             "b1": (self.hidden1,),
             "w2": (self.hidden2, self.hidden1),
             "b2": (self.hidden2,),
@@ -77,20 +80,20 @@ class Model:
         dimensions: the network's widths.
         integer: `w*` int8 and `b*` int16 in the units of docs/PROTOCOL.md section 4.
         floats: the float32 weights they were rounded from, same names and shapes.
-        made: how it was made: recipe, seed, commit, shape files (free form, JSON).
+        metadata: how it was made: recipe, seed, commit, shape files (free form, JSON).
     """
 
     labels: tuple[str, ...]
     dimensions: Dimensions
     integer: Mapping[str, NDArray[Any]]
     floats: Mapping[str, NDArray[np.float32]]
-    made: Mapping[str, Any] = field(default_factory=dict)
+    metadata: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def model_id(self) -> int:
         """16-bit id of dimensions, labels and integer weights: equal networks have equal ids."""
         size = self.dimensions
-        head = bytes([FORMAT, size.channels, size.hidden1, size.hidden2]) + "".join(self.labels).encode(
+        head = bytes([ID_VERSION, size.channels, size.hidden1, size.hidden2]) + "".join(self.labels).encode(
             "ascii"
         )
         return crc16(head + b"".join(self.integer[name].tobytes() for name in size.shapes()))
@@ -106,7 +109,7 @@ class Model:
             "model_id": f"{self.model_id:04X}",
             "labels": list(self.labels),
             **asdict(self.dimensions),
-            "made": dict(self.made),
+            "metadata": dict(self.metadata),
         }
         (directory / "model.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 
@@ -130,11 +133,11 @@ def load_model(directory: Path) -> Model:
         ) from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
-    if not isinstance(about, dict) or about.get("format") != FORMAT:
-        found = about.get("format") if isinstance(about, dict) else None
+    found = about.get("format") if isinstance(about, dict) else None
+    if found not in READABLE:
         raise UsageError(f"{about_path}: model format {found!r}, this tilenca reads {FORMAT}; train again")
     dimensions, labels = _description(about_path, about)
-    model = Model(labels, dimensions, *_weights(weights_path, dimensions), _made(about_path, about))
+    model = Model(labels, dimensions, *_weights(weights_path, dimensions), _metadata(about_path, about))
     if about.get("model_id") != f"{model.model_id:04X}":
         raise UsageError(
             f"{weights_path}: the weights have id {model.model_id:04X}, {about_path.name} says "
@@ -164,12 +167,12 @@ def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[s
     return dimensions, tuple(labels)
 
 
-def _made(path: Path, about: dict[str, Any]) -> dict[str, Any]:
+def _metadata(path: Path, about: dict[str, Any]) -> dict[str, Any]:
     """How the model was made: free form, but for the recipe, whose settings decide how it is simulated."""
-    made = about.get("made", {})
-    if not isinstance(made, dict) or not isinstance(made.get("recipe", {}), dict):
-        raise UsageError(f"{path}: made, and made.recipe, must be objects; train or check out again")
-    return made
+    metadata = format_1.metadata_of(about) if about["format"] == 1 else about.get("metadata", {})
+    if not isinstance(metadata, dict) or not isinstance(metadata.get("recipe", {}), dict):
+        raise UsageError(f"{path}: metadata, and metadata.recipe, must be objects; train or check out again")
+    return metadata
 
 
 def _weights(

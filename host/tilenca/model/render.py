@@ -1,7 +1,7 @@
 """Renders a model into the firmware's C++ files.
 
-Each file's first line says what it was rendered from and holds a checksum of all that follows, so that a
-change made by hand is noticed before it is overwritten.
+Each file's first line names the model and holds a checksum of all following lines, so that `export` notices a
+change made by hand before it overwrites it.
 """
 
 import hashlib
@@ -60,7 +60,7 @@ def check_fits(model: Model) -> None:
             raise BuildError(
                 f"model {model.model_id:04X}: w{layer} has a weight of -128; quantise to -127..127"
             )
-        bound = max(max(-one.least, one.most) for one in packing.passes(model, layer))
+        bound = max(max(-one.least, one.most) for one in packing.blocks(model, layer))
         if bound > ACCUMULATOR_MAX:
             raise BuildError(
                 f"model {model.model_id:04X}: layer {layer} could add up to {bound}, beyond the 24-bit "
@@ -68,13 +68,13 @@ def check_fits(model: Model) -> None:
             )
 
 
-def _lines(layer: list[packing.Pass]) -> Iterator[str]:
-    """A layer's stream as lines of C++: for each pass what it is, its biases, then its rows."""
+def _lines(layer: list[packing.Block]) -> Iterator[str]:
+    """A layer's stream as lines of C++: for each block a comment, its biases, then its rows."""
     for one in layer:
-        bits = 16 if one.narrow else 24
+        bits = 16 if one.is_16_bit else 24
         first, last = one.outputs.start, one.outputs.stop - 1
         yield f"// outputs {first}..{last}, sums {one.least}..{one.most}: {bits} bits"
-        width = packing.PASS_OUTPUTS
+        width = packing.BLOCK_OUTPUTS
         head, rows = np.split(one.stream, [packing.HEAD_BYTES])
         yield _line(head)
         for start in range(0, len(rows), ROW_LINES * width):
@@ -98,14 +98,14 @@ def render(model: Model) -> dict[Path, str]:
     widths = (("kTaps * kChannels", "kHidden1"), ("kHidden1", "kHidden2"), ("kHidden2", "kChannels"))
     layers = []
     for number, (inputs, outputs) in enumerate(widths, 1):
-        layer = packing.passes(model, number)
+        layer = packing.blocks(model, number)
         layers.append(
             {
                 "name": f"kLayer{number}",
                 "inputs": inputs,
                 "outputs": outputs,
                 "lines": list(_lines(layer)),
-                "narrow_only": str(all(one.narrow for one in layer)).lower(),
+                "narrow_only": str(all(one.is_16_bit for one in layer)).lower(),
                 "rounding": "kHiddenRounding" if number < len(widths) else "0",
             }
         )

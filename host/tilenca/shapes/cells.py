@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 
 TILE = "#"
 
@@ -18,7 +18,7 @@ def connected(cells: Iterable[tuple[int, int]]) -> bool:
     front = [left.pop()] if left else []
     while front:
         row, col = front.pop()
-        for dr, dc in STEPS:
+        for dr, dc in OFFSETS:
             if (cell := (row + dr, col + dc)) in left:
                 left.remove(cell)
                 front.append(cell)
@@ -38,7 +38,7 @@ def removable(cells: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     branches = 0  # that begin at the first cell
     while way:
         row, col = cell = way[-1]
-        around = [near for dr, dc in STEPS if (near := (row + dr, col + dc)) in tiles]
+        around = [near for dr, dc in OFFSETS if (near := (row + dr, col + dc)) in tiles]
         if new := next((near for near in around if near not in found), None):
             found[new] = earliest[new] = len(found)
             way.append(new)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_SHAPES
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
 from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
@@ -59,7 +59,7 @@ class Shape:
     def neighbours(self) -> list[list[int]]:
         """For every tile the indices into `cells` of its N, E, S, W neighbour, -1 for none."""
         index = {cell: number for number, cell in enumerate(self.cells)}
-        return [[index.get((row + dr, col + dc), -1) for dr, dc in STEPS] for row, col in self.cells]
+        return [[index.get((row + dr, col + dc), -1) for dr, dc in OFFSETS] for row, col in self.cells]
 
 
 @dataclass(frozen=True)

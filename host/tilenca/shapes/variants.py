@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import cells_of, connected, removable
 from tilenca.shapes.stretch import Rows, smallest
 
@@ -104,7 +104,7 @@ def segments(drawings: Sequence[Rows]) -> list[frozenset[Cell]]:
     nodes = {cell for cell in tiles if not _straight(tiles, cell)}
     found = set()
     for node in nodes:
-        for down, right in STEPS:
+        for down, right in OFFSETS:
             stroke, cell = [node], (node[0] + down, node[1] + right)
             while cell in tiles and cell not in nodes:
                 stroke.append(cell)
@@ -179,11 +179,11 @@ def _grow(random: np.random.Generator, tiles: int, room: set[Cell]) -> Rows:
     while front and len(grown) < tiles:
         cell = front.pop(int(random.integers(len(front))))
         grown.add(cell)
-        around = ((cell[0] + down, cell[1] + right) for down, right in STEPS)
+        around = ((cell[0] + down, cell[1] + right) for down, right in OFFSETS)
         front += [near for near in around if near in room and near not in grown and near not in front]
     return rows_of(grown)
 
 
 def _straight(tiles: set[Cell], cell: Cell) -> bool:
-    north, east, south, west = ((cell[0] + down, cell[1] + right) in tiles for down, right in STEPS)
+    north, east, south, west = ((cell[0] + down, cell[1] + right) in tiles for down, right in OFFSETS)
     return (north and south and not east and not west) or (east and west and not north and not south)

@@ -1,7 +1,6 @@
 """The firmware's own core, compiled for this machine: exact states, fast.
 
-`make setup` builds the library from firmware/include/core and tools/simulator; nothing is computed in Python
-here.
+`make setup` builds the library from firmware/include/core and tools/simulator.
 """
 
 import ctypes
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
-from tilenca.model.file import TAPS, Model
+from tilenca.model.file import NEIGHBOURHOOD, Model
 
 WIDEST = 0  # kWidest of tools/simulator/update.h
 
@@ -99,8 +98,8 @@ def update_cells(
     channels = model.dimensions.channels
     if states.dtype != np.int16 or states.shape[-1:] != (channels,):
         raise ValueError(f"states are {states.dtype} {states.shape}, the model needs int16 (..., {channels})")
-    if inputs.dtype != np.int8 or inputs.shape != (*states.shape[:-1], TAPS * channels):
-        wanted = (*states.shape[:-1], TAPS * channels)
+    if inputs.dtype != np.int8 or inputs.shape != (*states.shape[:-1], NEIGHBOURHOOD * channels):
+        wanted = (*states.shape[:-1], NEIGHBOURHOOD * channels)
         raise ValueError(f"inputs are {inputs.dtype} {inputs.shape}, the states need int8 {wanted}")
     new_states = np.array(states, dtype=np.int16, order="C")
     flat_inputs = np.ascontiguousarray(inputs)

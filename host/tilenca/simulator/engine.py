@@ -1,4 +1,4 @@
-"""What a cell computes: here the firmware's arithmetic, in `training.float_engine` tensors. numpy only."""
+"""The update of a cell: here in the firmware's arithmetic; `training.float_engine` uses tensors."""
 
 from typing import Any, Protocol
 
@@ -15,7 +15,7 @@ States = NDArray[Any]  # (N, C), of the engine's own type
 
 
 class Engine(Protocol):
-    """What one cell computes, for many cells at once."""
+    """The computation of one cell, for many cells at once."""
 
     channels: int
     classes: int
@@ -24,14 +24,14 @@ class Engine(Protocol):
         """(cells, C) states of tiles that were just switched on."""
 
     def message(self, states: States) -> States:
-        """(N, C) what cells send, and see of themselves."""
+        """(N, C) the messages that cells send, and see of themselves."""
 
     def update(self, states: States, seen: States) -> States:
         """(N, C) new states from the old ones and (N, 5 C) messages: own, N, E, S, W."""
 
 
 class ExactEngine:
-    """States and messages as on a tile; how an update is computed is left open."""
+    """States and messages as on a tile; subclasses compute the update."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -50,7 +50,7 @@ class ExactEngine:
 
 
 class FastEngine(ExactEngine):
-    """The firmware's portable core: every state to the bit as on a tile. `Simulator` leaves all to it."""
+    """The firmware's portable core: every state to the bit as on a tile. `Simulator` runs it compiled."""
 
     def update(self, states: States, seen: States) -> NDArray[np.int16]:
         """(N, C) int16, one update by the firmware's core."""

@@ -5,14 +5,14 @@ from numpy.typing import NDArray
 
 from tilenca.base.sides import SIDES, opposite
 from tilenca.simulator.engine import Engine, States
-from tilenca.simulator.rollout_library import DARK, Plan, Setup
+from tilenca.simulator.rollout_library import DARK, Setup, TickSchedule
 
 
-class RoundByRound:
-    """`Tissue` for an engine that is not the firmware's core.
+class NumpyRollout:
+    """`CompiledRollout` for an engine that is not the firmware's core.
 
     Args:
-        engine: what a cell computes.
+        engine: computes the cells' updates.
         setup: the runs.
         states: (N, C) of the engine's type; changed in place.
         shown: (N,) int8, the class each tile shows, `DARK` for none; changed in place.
@@ -20,48 +20,48 @@ class RoundByRound:
 
     def __init__(self, engine: Engine, setup: Setup, states: States, shown: NDArray[np.int8]) -> None:
         self.engine, self.setup, self.states, self.shown = engine, setup, states, shown
-        self.plan, self.updates = Plan(setup), 0
+        self.schedule, self.updates = TickSchedule(setup), 0
         self.own = engine.message(states)
-        # What each cell holds of its N, E, S, W neighbour; the last row is nobody's.
-        self.heard = np.zeros((len(states) + 1, len(SIDES), engine.channels), self.own.dtype)
+        # The message that each cell holds of its N, E, S, W neighbour; the last row stands for no cell.
+        self.received = np.zeros((len(states) + 1, len(SIDES), engine.channels), self.own.dtype)
         self.asked = setup.alive.copy()
         if setup.fault != "away":
             self.asked[setup.faulty[setup.faulty >= 0]] = False
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
-        """As `Tissue.run`, by one thread whatever `threads` is."""
+        """As `CompiledRollout.run`, by one thread whatever `threads` is."""
         del threads
         starts = self.setup.starts[:-1]
         total = np.add.reduceat(self.asked, starts, dtype=np.float32)
         for step in range(len(right)):
-            while not self._live():
+            while not self._tick():
                 pass
             good = self.asked & (self.shown == self.setup.target)
             right[step] = np.add.reduceat(good, starts, dtype=np.float32) / total
             if shown is not None:
                 shown[step] = self.shown
 
-    def _live(self) -> bool:
-        """Carries out one round; true when it is the last one of a step."""
-        rounds = self.plan.next()
-        self.shown[rounds.gone] = DARK
-        self.states[rounds.born] = self.engine.seed(len(rounds.born))
-        self.own[rounds.born] = self.engine.message(self.states[rounds.born])
-        self.heard[rounds.born] = 0
-        neighbours = self.setup.neighbours[rounds.senders]
+    def _tick(self) -> bool:
+        """Carries out one tick; true when it is the last one of a step."""
+        tick = self.schedule.next()
+        self.shown[tick.gone] = DARK
+        self.states[tick.born] = self.engine.seed(len(tick.born))
+        self.own[tick.born] = self.engine.message(self.states[tick.born])
+        self.received[tick.born] = 0
+        neighbours = self.setup.neighbours[tick.senders]
         for side in range(len(SIDES)):
-            arrives = rounds.arrives[:, side]
-            self.heard[neighbours[arrives, side], opposite(side)] = self.own[rounds.senders[arrives]]
-        self._update(rounds.updating, rounds.absent)
-        return rounds.last
+            arrives = tick.arrives[:, side]
+            self.received[neighbours[arrives, side], opposite(side)] = self.own[tick.senders[arrives]]
+        self._update(tick.updating, tick.absent)
+        return tick.last
 
-    def _update(self, who: NDArray[np.int32], absent: NDArray[np.bool_]) -> None:
-        if not len(who):
+    def _update(self, cells: NDArray[np.int32], absent: NDArray[np.bool_]) -> None:
+        if not len(cells):
             return
-        heard = self.heard[who]
-        heard[absent] = 0
-        seen = np.concatenate((self.own[who], heard.reshape(len(who), -1)), axis=1)
-        new = self.engine.update(self.states[who], seen)
-        self.states[who], self.own[who] = new, self.engine.message(new)
-        self.shown[who] = new[:, -self.engine.classes :].argmax(axis=1)
-        self.updates += len(who)
+        received = self.received[cells]
+        received[absent] = 0
+        seen = np.concatenate((self.own[cells], received.reshape(len(cells), -1)), axis=1)
+        new = self.engine.update(self.states[cells], seen)
+        self.states[cells], self.own[cells] = new, self.engine.message(new)
+        self.shown[cells] = new[:, -self.engine.classes :].argmax(axis=1)
+        self.updates += len(cells)

@@ -1,7 +1,7 @@
-"""Python face of the compiled tissue (tools/simulator): who updates when, hears what, and is there at all.
+"""Compiled rollouts of a batch of grids (tools/simulator): the schedule, the messages and the updates.
 
-`Tissue` does it all for the firmware's core. `Plan` only says what happens, round by round, to those who
-compute states of another kind; both follow the same schedule, number by number.
+`CompiledRollout` computes all of it with the firmware's core. `TickSchedule` only gives the events of each
+tick, for engines that compute other states; both follow the same schedule, number by number.
 """
 
 import ctypes
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from tilenca.model.file import Model
 from tilenca.simulator.core_library import CModel, address, library
 
-TICKS = 20  # kTicks of schedule.h: the resolution of a step on clocks
-UNITS_PER_STEP = TICKS << 16  # kUnits of a tick
+TICKS_PER_STEP = 20  # kTicks of schedule.h: the resolution of a step on clocks
+UNITS_PER_STEP = TICKS_PER_STEP << 16  # kUnits of a tick
 LOSS_UNITS = 1 << 32
 DARK = -1
 FAULTS = ("none", "dead", "stuck", "away")  # TilencaFault
@@ -45,14 +45,14 @@ class _CSetup(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Setup:
-    """R runs of N cells in all, and what they have to live with; times on clocks are in units of a step.
+    """R runs of N cells in all, and their conditions; times on clocks are in units of a step.
 
     Attributes:
         starts: (R + 1,) the first cell of each run, and N.
         neighbours: (N, 4) N, E, S, W; N for none.
-        alive: (N,) false: never there.
+        alive: (N,) false: dead from the start.
         target: (N,) the class that is right.
-        seeds: (R,) uint64, decides all chance during the run.
+        seeds: (R,) uint64, of the random generator of each run.
         loss: share of messages lost.
         zeros: whether a lost message reads as zeros; else the last one is held.
         clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None:
@@ -78,7 +78,7 @@ class Setup:
 
 
 def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
-    """Times as the schedule counts them."""
+    """Times in the units of the schedule."""
     counted: NDArray[np.int64] = np.rint(np.asarray(steps) * UNITS_PER_STEP).astype(np.int64)
     return counted
 
@@ -113,7 +113,7 @@ def _as_c(setup: Setup) -> _CSetup:
     return made
 
 
-class Tissue:
+class CompiledRollout:
     """Runs by the firmware's core.
 
     Args:
@@ -133,40 +133,40 @@ class Tissue:
         if states.dtype != np.int16 or not states.flags.c_contiguous:
             raise ValueError(f"states are {states.dtype}, wanted: contiguous int16")
         self._runs, self._cells = len(setup.seeds), len(setup.alive)
-        self._kept = _as_c(setup), states, shown
-        self._library, self._tissue = library(), None
-        self._tissue = self._library.tilenca_tissue_new(
-            CModel.of(model), ctypes.byref(self._kept[0]), address(states), address(shown)
+        self._alive = _as_c(setup), states, shown  # as long as C points at them
+        self._library, self._rollout = library(), None
+        self._rollout = self._library.tilenca_tissue_new(
+            CModel.of(model), ctypes.byref(self._alive[0]), address(states), address(shown)
         )
-        if not self._tissue:
+        if not self._rollout:
             raise MemoryError
 
     def __del__(self) -> None:
-        if getattr(self, "_tissue", None):
-            self._library.tilenca_tissue_delete(self._tissue)
+        if getattr(self, "_rollout", None):
+            self._library.tilenca_tissue_delete(self._rollout)
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
-        """Lives on for as many steps as there is room for.
+        """Runs as many steps as `right` has rows.
 
         Args:
-            right: (T, R), filled with the share of tiles right after each step, of those asked.
-            shown: (T, N), filled with what each tile shows; None: not wanted.
+            right: (T, R), filled with the share of the counted tiles that are right after each step.
+            shown: (T, N), filled with the class that each tile shows; None: not wanted.
             threads: how many to use; the result does not depend on it.
         """
         for array, width in ((right, self._runs), (shown, self._cells)):
             if array is not None and not (array.flags.c_contiguous and array.shape == (len(right), width)):
                 raise ValueError(f"a result is {array.shape}, wanted: ({len(right)}, {width}), contiguous")
         self._library.tilenca_tissue_run(
-            self._tissue, len(right), threads, address(right), None if shown is None else address(shown)
+            self._rollout, len(right), threads, address(right), None if shown is None else address(shown)
         )
 
     @property
     def updates(self) -> int:
         """Cell updates computed in all."""
-        return int(self._library.tilenca_tissue_updates(self._tissue))
+        return int(self._library.tilenca_tissue_updates(self._rollout))
 
 
-class _CRound(ctypes.Structure):
+class _CTick(ctypes.Structure):
     """`TilencaRound` of tools/simulator/core_api.cpp."""
 
     _fields_ = (
@@ -176,17 +176,17 @@ class _CRound(ctypes.Structure):
 
 
 @dataclass(frozen=True)
-class Round:
-    """What happens in a round, in this order.
+class Tick:
+    """The events of a tick, in this order.
 
     Attributes:
         gone: cells that fall silent and dark.
-        born: cells that are switched on again in the seed state, and have heard nobody.
-        senders: (A,) cells whose message of now arrives.
+        born: cells that are switched on again in the seed state, without any message.
+        senders: (A,) cells whose current message arrives.
         arrives: (A, 4) bool, on which sides.
         updating: (U,) cells that update.
         absent: (U, 4) bool, the sides that they read as zeros.
-        last: whether it is the last round of a step.
+        last: whether it is the last tick of a step.
     """
 
     gone: Cells
@@ -198,34 +198,34 @@ class Round:
     last: bool
 
 
-class Plan:
+class TickSchedule:
     """The schedule of runs, without their states."""
 
     def __init__(self, setup: Setup) -> None:
-        self._kept = _as_c(setup)
+        self._setup = _as_c(setup)
         self._library = library()
-        self._round = _CRound()
-        self._plan = self._library.tilenca_plan_new(ctypes.byref(self._kept))
-        if not self._plan:
+        self._tick = _CTick()
+        self._schedule = self._library.tilenca_plan_new(ctypes.byref(self._setup))
+        if not self._schedule:
             raise MemoryError
 
     def __del__(self) -> None:
-        if getattr(self, "_plan", None):
-            self._library.tilenca_plan_delete(self._plan)
+        if getattr(self, "_schedule", None):
+            self._library.tilenca_plan_delete(self._schedule)
 
-    def next(self) -> Round:
-        """Plans the next round."""
-        last = bool(self._library.tilenca_plan_next(self._plan, ctypes.byref(self._round)))
+    def next(self) -> Tick:
+        """Plans the next tick."""
+        last = bool(self._library.tilenca_plan_next(self._schedule, ctypes.byref(self._tick)))
 
         def cells(name: str, width: int) -> Cells:
-            count = getattr(self._round, f"{name}_count")
+            count = getattr(self._tick, f"{name}_count")
             if count == 0:
                 return np.zeros((0, width), np.int32)
-            return np.ctypeslib.as_array(getattr(self._round, name), (count, width)).copy()
+            return np.ctypeslib.as_array(getattr(self._tick, name), (count, width)).copy()
 
         senders, arrives = _events(cells("arrivals", 2))
         updating, absent = _events(cells("updates", 2))
-        return Round(cells("gone", 1)[:, 0], cells("born", 1)[:, 0], senders, arrives, updating, absent, last)
+        return Tick(cells("gone", 1)[:, 0], cells("born", 1)[:, 0], senders, arrives, updating, absent, last)
 
 
 def _events(pairs: Cells) -> tuple[Cells, NDArray[np.bool_]]:

@@ -1,6 +1,6 @@
-"""Tissues of tiles on the schedule of real tiles or of the paper, thousands at a time.
+"""Batches of grids on the schedule of real tiles or of the paper, thousands at a time.
 
-A `Simulator` owns many runs side by side as one flat list of cells. What a cell computes is an `Engine`: the
+A `Simulator` owns many runs side by side as one flat list of cells. An `Engine` computes the cells: the
 firmware's own core (`FastEngine`), which is compiled together with the schedule (`rollout_library`), or
 anything else, such as tensors (`tilenca.training.float_engine`), which follows the same schedule in numpy
 (`numpy_rollout`).
@@ -16,24 +16,24 @@ from numpy.typing import NDArray
 
 from tilenca.shapes.batch import Batch, Drawings
 from tilenca.simulator.engine import Engine, FastEngine, States
-from tilenca.simulator.numpy_rollout import RoundByRound
-from tilenca.simulator.rollout_library import DARK, NOBODY, Setup, Tissue
+from tilenca.simulator.numpy_rollout import NumpyRollout
+from tilenca.simulator.rollout_library import DARK, NOBODY, CompiledRollout, Setup
 
-Schedule = Literal["random", "clock"]
+ScheduleKind = Literal["random", "clock"]
 
-# Cell updates between two looks at the rest of the world, such as Ctrl-C: some tenths of a second.
+# Cell updates between two checks for anything else, such as Ctrl-C: some tenths of a second.
 ATTENTION = 500_000
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """What the tiles have to live with. Times are in steps: the nominal period, one update per tile.
+    """The conditions of a run. Times are in steps: the nominal period, one update per tile.
 
     Attributes:
-        schedule: "random": twice per step a random half of the tiles updates and is heard at once (the
-            paper's sampler); "clock": each tile has its phase, period and latency, and starts when it will.
+        schedule: "random": twice per step a random half of the tiles updates and its messages arrive
+            at once (the paper's sampler); "clock": each tile has its own phase, period, latency and start.
         loss: share of messages lost, 0..1.
-        lost: what is read instead of a lost message: the last one "held" until its sender was silent for
+        lost: the substitute for a lost message: the last one "held" until its sender was silent for
             `SILENT_PERIODS` steps (as tiles do), or "zero".
         dead: share of tiles that are silent and dark from the start; they are not counted.
         drift: largest relative difference of a tile's period from the nominal one.
@@ -44,7 +44,7 @@ class Conditions:
         ValueError: a value is out of range.
     """
 
-    schedule: Schedule = "random"
+    schedule: ScheduleKind = "random"
     loss: float = 0.0
     lost: Literal["held", "zero"] = "held"
     dead: float = 0.0
@@ -67,7 +67,7 @@ class Conditions:
 
 @dataclass(frozen=True)
 class Fault:
-    """What happens to one tile of each run. One that is dead or stuck is not asked what it shows.
+    """A fault of one tile of each run. A tile that is dead or stuck does not count when a run is judged.
 
     Attributes:
         kind: "dead": silent and dark from step `begin` on; "stuck": does not update from then on, but goes on
@@ -98,8 +98,8 @@ class Fault:
 
 
 @dataclass(frozen=True)
-class Course:
-    """How runs went.
+class Trajectory:
+    """The results of runs, step by step.
 
     Attributes:
         right: (T, R) float32, share of the run's living tiles that show its class after each step.
@@ -115,7 +115,7 @@ class Course:
         return self.right >= 1.0
 
     @property
-    def settled(self) -> NDArray[np.float64]:
+    def converged_at(self) -> NDArray[np.float64]:
         """(R,) first step (from 1) from which the run stays right to the end; infinite for none."""
         wrong = ~self.agreed
         last_wrong = np.where(wrong.any(axis=0), len(wrong) - np.argmax(wrong[::-1], axis=0), 0)
@@ -123,28 +123,28 @@ class Course:
 
 
 class Simulator:
-    """R runs side by side, which know nothing of each other.
+    """R independent runs side by side.
 
     Args:
-        engine: what a cell computes.
+        engine: computes the cells' updates.
         drawings: the task.
         chosen: (R,) the drawing of each run.
-        conditions: what the tiles have to live with.
-        random: the only source of chance; it is asked here only, not while the runs go on.
+        conditions: of all runs.
+        random: the only source of chance; it is used here only, not during the runs.
         states: (N, C) to start from, cells in the order of `drawings.batch(chosen)`; None: the seed state.
-        fault: what happens to one tile of each run; None: nothing.
+        fault: of one tile of each run; None: none.
         threads: how many to use, None: one per processor; results do not depend on it.
 
     Attributes:
         chosen: (R,) the drawing of each run.
         batch: the cells.
-        states: (N, C) states of now; not to be written to.
+        states: (N, C) current states; not to be written to.
         shown: (N,) int8, the class each tile shows now, -1 for dark.
         alive: (N,) whether a tile is not one of `conditions.dead`.
-        setup: all that chance decided beforehand.
+        setup: everything that was drawn beforehand.
 
     Raises:
-        ValueError: `states` or `fault` do not fit the runs, or nobody is left to ask.
+        ValueError: `states` or `fault` do not fit the runs, or a run has no tile that counts.
     """
 
     def __init__(
@@ -189,35 +189,35 @@ class Simulator:
         if not np.logical_or.reduceat(asked, batch.starts).all():
             raise ValueError("fault: a run has no other living tile, and nobody is left to ask")
         self.setup = setup
-        self._life: Tissue | RoundByRound
+        self._rollout: CompiledRollout | NumpyRollout
         if isinstance(engine, FastEngine):
-            self._life = Tissue(engine.model, setup, self.states, self.shown)
+            self._rollout = CompiledRollout(engine.model, setup, self.states, self.shown)
         else:
-            self._life = RoundByRound(engine, setup, self.states, self.shown)
+            self._rollout = NumpyRollout(engine, setup, self.states, self.shown)
 
     def run(
         self, steps: int, record: bool = False, tell: Callable[[int], None] = lambda done: None
-    ) -> Course:
-        """Lives on for some steps.
+    ) -> Trajectory:
+        """Runs some more steps.
 
         Args:
             steps: how many.
-            record: whether to keep what every tile shows after each step.
-            tell: called now and then with the number of steps done.
+            record: whether to keep the class that every tile shows after each step.
+            tell: called at intervals with the number of steps done.
         """
         right = np.empty((steps, len(self.batch.starts)), np.float32)
         shown = np.empty((steps, self.cells), np.int8) if record else None
         stride = max(1, ATTENTION * self.threads // self.cells)
         for step in range(0, steps, stride):
             part = slice(step, step + stride)
-            self._life.run(right[part], None if shown is None else shown[part], self.threads)
+            self._rollout.run(right[part], None if shown is None else shown[part], self.threads)
             tell(min(step + stride, steps))
-        return Course(right, shown)
+        return Trajectory(right, shown)
 
     @property
     def updates(self) -> int:
         """How many cell updates were computed in all."""
-        return self._life.updates
+        return self._rollout.updates
 
 
 def processors() -> int:
@@ -227,7 +227,7 @@ def processors() -> int:
 
 def _draw_alive(batch: Batch, dead: float, random: np.random.Generator) -> NDArray[np.bool_]:
     draws = random.random(len(batch.sample))
-    # At least one tile of every run lives, or there would be nobody to ask.
+    # At least one tile of every run stays alive, so that there is one to count.
     luckiest = np.maximum.reduceat(draws, batch.starts)[batch.sample]
     alive: NDArray[np.bool_] = (draws >= dead) | (draws == luckiest)
     return alive

@@ -1,4 +1,4 @@
-"""What every tile of a drawing shows, step by step: a run of the fast simulator, kept to be looked at."""
+"""A recorded run of the fast simulator: the class that every tile of a drawing shows, step by step."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from tilenca.model.file import Model
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, Schedule, Simulator
+from tilenca.simulator.simulator import Conditions, ScheduleKind, Simulator
 
 NOTHING = -1
 
@@ -23,7 +23,7 @@ class Film:
         labels: the model's classes.
         shown: (T + 1, N) int64, the class that each tile of `shape.cells` shows at the start and after each
             step, NOTHING before its first update.
-        about: what else there is to say of the run, for a caption.
+        about: a caption.
     """
 
     shape: Shape
@@ -39,17 +39,19 @@ class Film:
 
     @property
     def agreed_at(self) -> int | None:
-        """The step from which every tile is right to the end; None: it does not come."""
+        """The step from which every tile is right to the end; None: there is none."""
         wrong = np.flatnonzero(~self.right)
-        settled = 0 if len(wrong) == 0 else int(wrong[-1]) + 1
-        return settled if settled < len(self.shown) else None
+        converged_at = 0 if len(wrong) == 0 else int(wrong[-1]) + 1
+        return converged_at if converged_at < len(self.shown) else None
 
 
-def record(model: Model, drawings: Drawings, number: int, steps: int, schedule: Schedule, seed: int) -> Film:
-    """Lets one drawing run; all tiles are switched on at step 0.
+def record(
+    model: Model, drawings: Drawings, number: int, steps: int, schedule: ScheduleKind, seed: int
+) -> Film:
+    """Records a run of one drawing; all tiles are switched on at step 0.
 
     Args:
-        model: what the tiles run.
+        model: of the tiles.
         drawings: the task.
         number: which of the drawings.
         steps: updates per tile.
@@ -59,7 +61,7 @@ def record(model: Model, drawings: Drawings, number: int, steps: int, schedule: 
     Raises:
         BuildError: the simulator is not built.
     """
-    tissue = Simulator(
+    simulator = Simulator(
         FastEngine(model),
         drawings,
         np.array([number], np.int64),
@@ -67,8 +69,8 @@ def record(model: Model, drawings: Drawings, number: int, steps: int, schedule: 
         np.random.default_rng(seed),
     )
 
-    pictures = [np.full((1, tissue.cells), NOTHING, np.int8)]
-    if (shown := tissue.run(steps, record=True).shown) is not None:
+    pictures = [np.full((1, simulator.cells), NOTHING, np.int8)]
+    if (shown := simulator.run(steps, record=True).shown) is not None:
         pictures.append(shown)
     updates = "every tile on its own clock" if schedule == "clock" else "random updates, as in the paper"
     about = f"model {model.model_id:04X}, {updates}, seed {seed}; a step is one update per tile"

@@ -1,21 +1,21 @@
-"""Tissues rebuilt into other drawings while running: tiles that stay keep their state, new ones are seeds."""
+"""Grids rebuilt into other drawings while running: tiles that stay keep their state, new ones are seeds."""
 
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.base.sides import STEPS
+from tilenca.base.sides import OFFSETS
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.cells import removable
 from tilenca.shapes.file import Shape
 from tilenca.shapes.variants import Cell, rows_of
 from tilenca.simulator.engine import Engine, States
-from tilenca.simulator.simulator import Conditions, Course, Simulator
+from tilenca.simulator.simulator import Conditions, Simulator, Trajectory
 
 BETWEEN = 3  # steps from one tile to the next
 PLACES_TRIED = 100
-Changed = tuple[Course, NDArray[np.int64]]
+Changed = tuple[Trajectory, NDArray[np.int64]]
 
 
 def rebuild(
@@ -27,12 +27,12 @@ def rebuild(
         engine: the model.
         drawings: of one size.
         runs: runs of each change.
-        before: steps that the old drawing lives.
-        after: steps that the new one lives.
+        before: steps of the old drawing.
+        after: steps of the new one.
         random: the only source of chance.
 
     Returns:
-        The course of the new drawings' life, and (R,) which they were; None where there is but one class.
+        The trajectory of the new drawings, and (R,) their numbers; None where there is only one class.
     """
     pairs = np.array(list(_pairs(drawings)) * runs, dtype=np.int64).reshape(-1, 2)
     if not len(pairs):
@@ -50,8 +50,8 @@ def rebuild_tile_by_tile(
 ) -> Changed | None:
     """The same, one tile after the other: those of the new drawing put down, then the old ones taken away.
 
-    States are kept; all tiles' clocks are drawn anew at every change, and what they last heard is forgotten,
-    which is harder than what real tiles go through.
+    States are kept. All tiles' clocks are drawn anew at every change, and the last messages are forgotten;
+    real tiles have it easier.
     """
     pairs = list(_pairs(drawings)) * runs
     if not pairs:
@@ -65,7 +65,7 @@ def rebuild_tile_by_tile(
     every = drawings.of([Shape(drawings.labels[0], rows_of(cells), "") for cells in numbers])
     state = None
     for step in range(int(lengths.max())):
-        # Who has arrived waits for the others.
+        # Runs that have reached their new drawing wait for the others.
         now = [walk[min(step, len(walk) - 1)] for walk in walks]
         chosen = np.array([numbers[cells] for cells in now])
         boot = 10.0 if state is None else 0.0
@@ -123,7 +123,7 @@ def _laid_on(drawings: Drawings, old: int, new: int, random: np.random.Generator
 
 
 def _around(cell: Cell) -> list[Cell]:
-    return [(cell[0] + down, cell[1] + right) for down, right in STEPS]
+    return [(cell[0] + down, cell[1] + right) for down, right in OFFSETS]
 
 
 def _stays(now: Sequence[Cell], following: Sequence[Cell]) -> NDArray[np.int64]:

@@ -1,4 +1,4 @@
-"""Checkpoints: a training run in a file, whole or not at all."""
+"""Checkpoints: a training run in a file, which is written whole or not at all."""
 
 import io
 from pathlib import Path
@@ -16,14 +16,14 @@ def write_checkpoint(path: Path, config: State, state: State) -> None:
 
     Args:
         path: the file.
-        config: decides the result, plain values.
+        config: plain values; they decide the result.
         state: plain values and tensors.
 
     Raises:
         TilencaError: the disk is full or not writable.
     """
     buffer = io.BytesIO()
-    torch.save({"config": config, **state}, buffer)  # on a full disk torch raises what does not say so
+    torch.save({"config": config, **state}, buffer)  # torch's exception hides a full disk
     partial = path.with_suffix(".part")
     try:
         partial.write_bytes(buffer.getbuffer())
@@ -45,7 +45,7 @@ def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
         theirs: State = state["config"]
     except FileNotFoundError as error:
         raise UsageError(f"{path}: nothing to resume; train without --resume") from error
-    except Exception as error:  # torch raises whatever its unpickler met
+    except Exception as error:  # any exception of torch's unpickler
         raise UsageError(
             f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
         ) from error

@@ -1,7 +1,7 @@
-"""What training looks at: a task's drawings, the same stretched, damaged, and drawings of no class.
+"""The drawings to train on: a task's own, the same stretched, damaged, and drawings of no class.
 
-Every drawing has a scale, within which tissues are rebuilt into each other, and a weight, its share of the
-tissues. All of it follows from the task, the recipe and one generator of chance.
+Every drawing has a scale, within which grids are rebuilt into each other, and a weight, its share of the
+grids. Task, recipe and one random generator decide all of it.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -27,8 +27,8 @@ class Curriculum:
 
     Attributes:
         drawings: all of them; `groups` are scales.
-        weights: (S,) float64, share of the tissues that a drawing gets; sums to 1.
-        whole: (S,) bool, drawings of a class without damage: what training begins with.
+        weights: (S,) float64, share of the grids that a drawing gets; sums to 1.
+        whole: (S,) bool, drawings of a class without damage: with which training begins.
     """
 
     drawings: Drawings
@@ -37,7 +37,7 @@ class Curriculum:
 
 
 def labels_of(task: Drawings, recipe: Recipe, max_classes: int) -> tuple[str, ...]:
-    """The classes to train: the task's, and a dash for what is none of them where the state has room."""
+    """The classes to train: the task's, and a dash for all other drawings where the state has room."""
     if recipe.unknown == 0 or UNKNOWN in task.labels or len(task.labels) == max_classes:
         return task.labels
     return (*task.labels, UNKNOWN)
@@ -48,8 +48,8 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
 
     Args:
         task: the drawings of the files, with the model's labels.
-        recipe: how much of what.
-        sizes: what the drawings of the first file may be stretched to as well.
+        recipe: the shares.
+        sizes: other sizes to stretch the drawings of the first file to.
         random: for the drawings of no class.
     """
     fitting = sizes.within(task.largest, recipe.stretch)

@@ -1,10 +1,10 @@
-"""Whether PyTorch and the device that is asked for are there."""
+"""Checks that PyTorch and the wanted device are there."""
 
 from tilenca.base.errors import UsageError
 
 
 def check_device(device: str) -> None:
-    """Checks before long work that it can be done.
+    """Checks the device before long work begins.
 
     Args:
         device: `cpu` or `cuda`.

@@ -1,4 +1,4 @@
-"""Simulation engines that compute with PyTorch: the real-valued ."""
+"""The simulation engine that computes with PyTorch, in real numbers."""
 
 import numpy as np
 import torch
@@ -10,11 +10,11 @@ from tilenca.training.network import TileNet
 
 
 class FloatEngine:
-    """The network as it was trained: bounded to the tile's arithmetic, or in plain real numbers."""
+    """The network as it was trained: in the tile's arithmetic, or in plain real numbers."""
 
     def __init__(self, model: Model) -> None:
-        bounded = bool(model.made.get("recipe", {}).get("bounded", True))
-        self.net = TileNet(model.dimensions, bounded, model.floats)
+        quantisation_aware = bool(model.metadata.get("recipe", {}).get("quantisation_aware", True))
+        self.net = TileNet(model.dimensions, quantisation_aware, model.floats)
         self.weights = self.net.weights()
         self.channels = model.dimensions.channels
         self.classes = len(model.labels)

@@ -1,8 +1,8 @@
 """The network of a tile in PyTorch: perceive, then update.
 
 Training works on flat batches of real cells (see `tilenca.shapes.batch`); tests compare `perceive` with a
-convolution on a padded grid. The integer twins of the bounded
-network are `tilenca.model.quantise.IntegerNet` and the firmware's `core/network`.
+convolution on a padded grid. The firmware's `core/network` is the integer twin of the quantisation-aware
+network.
 """
 
 from collections.abc import Mapping
@@ -14,17 +14,17 @@ import torch.nn.functional as F  # noqa: N812 - the usual name
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from tilenca.model.file import LARGEST, STEPS, Dimensions
+from tilenca.model.file import LARGEST, SCALES, Dimensions
 
-# The bounded network computes in units of 1/64, in which a tile's messages and activations are whole numbers
-# (docs/PROTOCOL.md section 4). float32 holds every value on the way exactly: it is the integer tile, to the
-# bit.
+# The quantisation-aware network computes in units of 1/64, in which a tile's messages and activations are
+# whole numbers (docs/PROTOCOL.md section 4). float32 holds every value on the way exactly: the results are
+# those of the integer tile, to the bit.
 UNITS = 64
 LIMIT = 127.0
 
 
 class _Round(torch.autograd.Function):
-    """floor(x + 1/2), halves going up as in the tile; the gradient passes as if nothing had happened."""
+    """floor(x + 1/2), halves going up as in the tile; straight-through gradient."""
 
     @staticmethod
     def forward(ctx: Any, value: Tensor) -> Tensor:
@@ -45,14 +45,14 @@ def perceive(own: Tensor, sent: Tensor, neighbours: Tensor) -> Tensor:
 
     Args:
         own: (N, C) float32, every cell's own message.
-        sent: (N, C) float32, what every cell's neighbours have last received from it.
+        sent: (N, C) float32, the message that every cell's neighbours received from it last.
         neighbours: (4 * N,) int64, for each cell its N, E, S, W neighbour; N for none.
 
     Returns:
-        (N, 5 * C) float32, tap order fixed by docs/PROTOCOL.md.
+        (N, 5 * C) float32, in the order that docs/PROTOCOL.md fixes.
     """
-    with_nobody = F.pad(sent, (0, 0, 0, 1))
-    around = with_nobody.index_select(0, neighbours).view(own.shape[0], -1)
+    with_absent = F.pad(sent, (0, 0, 0, 1))
+    around = with_absent.index_select(0, neighbours).view(own.shape[0], -1)
     return torch.cat((own, around), dim=1)
 
 
@@ -63,19 +63,19 @@ class TileNet(nn.Module):
 
     Args:
         dimensions: the widths.
-        bounded: compute exactly what the integer tile computes, with gradients as if nothing had been
-            rounded; False: plain real numbers, as the paper does.
+        quantisation_aware: compute exactly what the integer tile computes, with gradients as if nothing had
+            been rounded; False: plain real numbers, as the paper does.
         arrays: initial weights by name (float32, shapes of `Dimensions.shapes`).
     """
 
     def __init__(
-        self, dimensions: Dimensions, bounded: bool, arrays: Mapping[str, NDArray[np.float32]]
+        self, dimensions: Dimensions, quantisation_aware: bool, arrays: Mapping[str, NDArray[np.float32]]
     ) -> None:
         super().__init__()
         self.dimensions = dimensions
-        self.bounded = bounded
-        self.units = UNITS if bounded else 1
-        self.limit = LIMIT if bounded else torch.inf
+        self.quantisation_aware = quantisation_aware
+        self.units = UNITS if quantisation_aware else 1
+        self.limit = LIMIT if quantisation_aware else torch.inf
         for name in dimensions.shapes():
             self.register_parameter(name, nn.Parameter(torch.from_numpy(arrays[name].copy())))
 
@@ -86,14 +86,14 @@ class TileNet(nn.Module):
     def weights(self) -> tuple[Tensor, ...]:
         """w1, b1, w2, b2, w3, b3 as cells use them: rounded to the tile's steps, biases in units."""
         rounded = {
-            name: round_half_up(value * STEPS[name]) / STEPS[name] if self.bounded else value
+            name: round_half_up(value * SCALES[name]) / SCALES[name] if self.quantisation_aware else value
             for name, value in self.named_parameters()
         }
         return tuple(value * self.units if name.startswith("b") else value for name, value in rounded.items())
 
     def message(self, state: Tensor) -> Tensor:
-        """(N, C) what a cell sends, and sees of itself: its state, a whole number of units where bounded."""
-        return round_half_up(state) if self.bounded else state
+        """(N, C) the message of a cell: its state, rounded to whole units if quantisation-aware."""
+        return round_half_up(state) if self.quantisation_aware else state
 
     def update(self, state: Tensor, perceived: Tensor, fires: Tensor, weights: tuple[Tensor, ...]) -> Tensor:
         """One update of the cells that fire; the others keep their state.
@@ -117,7 +117,7 @@ class TileNet(nn.Module):
     def project(self) -> None:
         """Brings weights back into the range that the integer tile can hold."""
         for name, value in self.named_parameters():
-            value.clamp_(-LARGEST[name] / STEPS[name], LARGEST[name] / STEPS[name])
+            value.clamp_(-LARGEST[name] / SCALES[name], LARGEST[name] / SCALES[name])
 
 
 def initial_arrays(

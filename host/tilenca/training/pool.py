@@ -1,7 +1,7 @@
-"""Tissues that live on from one iteration to the next, disturbed and undisturbed.
+"""Grids whose rollouts go on from one iteration to the next: the perturbed and the undisturbed pool.
 
-Training only ever looks at some ten updates at a time. A pool lets those be *any* ten of a long life: just
-switched on, rebuilt into another drawing while running (tiles that stay keep their state), or long settled.
+One iteration looks at some ten updates of a grid only. A pool lets those be *any* ten of a long rollout: just
+switched on, rebuilt into another drawing while running (tiles that stay keep their state), or long converged.
 """
 
 from dataclasses import dataclass, fields
@@ -17,53 +17,58 @@ from tilenca.training.recipes import Recipe
 from tilenca.training.update_schedule import Circumstances
 
 States = NDArray[np.float32]
-FORGETS = 0.1  # weight of the newest result in a drawing's share of failures
-QUIET_DRAWN = 0.5  # share of the quiet pool that has the files' own drawings, which must last
-HAD_TIME = 40  # rounds undisturbed after which a wrong tile counts as a failure
+Numbers = NDArray[np.int64]
+FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
+UNDISTURBED_DRAWN = 0.5  # share of the undisturbed pool that has the files' own drawings, which must last
+CONVERGED_AFTER = 40  # ticks without a disturbance after which a wrong tile counts as a failure
 
 
 @dataclass
 class Pool:
-    """Tissues and how long each has been left alone.
+    """Grids, and for how long each has been left alone.
 
     Attributes:
-        drawing: (P,) int64, the drawing each tissue has.
+        drawing: (P,) int64, the drawing of each grid.
         states: (P, M, C) float32, states of its cells, unused places zero.
-        age: (P,) int64, rounds since the last disturbance.
-        life: (P,) int64, rounds after which a quiet tissue starts anew.
+        age: (P,) int64, ticks since the last disturbance.
+        lifetime: (P,) int64, ticks after which an undisturbed grid starts anew.
     """
 
-    drawing: NDArray[np.int64]
+    drawing: Numbers
     states: States
-    age: NDArray[np.int64]
-    life: NDArray[np.int64]
+    age: Numbers
+    lifetime: Numbers
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A batch of B tissues from the pools.
+    """A batch of B grids from the pools.
 
     Attributes:
+        perturbed: which grids of the perturbed pool come first in the batch.
+        undisturbed: which grids of the undisturbed pool come after them.
         batch: their cells.
         states: (N, C) float32.
-        settled: (B,) bool, left alone for so long that nothing should change any more.
-        given: what they live through; tiles that are away will be back in the seed state when the tissue is
-            next taken, and those of the quiet pool are calm.
+        converged: (B,) bool, left alone for so long that nothing should change any more.
+        given: what happens to them during the rollout; tiles that are away are back in the seed state when
+            the grid is taken again, and the undisturbed pool loses no messages.
     """
 
+    perturbed: Numbers
+    undisturbed: Numbers
     batch: Batch
     states: States
-    settled: NDArray[np.bool_]
+    converged: NDArray[np.bool_]
     given: Circumstances
 
     @property
     def asked(self) -> NDArray[np.bool_]:
-        """(B,) whether a tissue must be right: it is all there, and was from the beginning."""
-        return ~(self.given.late | np.logical_or.reduceat(self.given.away, self.batch.starts))
+        """(B,) whether a grid must be right: all of its tiles are there, and were from the beginning."""
+        return ~(self.given.staggered | np.logical_or.reduceat(self.given.away, self.batch.starts))
 
 
 class Pools:
-    """The busy and the quiet pool of one training run; without pools every sample is fresh."""
+    """The perturbed and the undisturbed pool of one training run; without pools every sample is fresh."""
 
     def __init__(
         self, recipe: Recipe, curriculum: Curriculum, channels: int, random: np.random.Generator
@@ -74,7 +79,7 @@ class Pools:
         self.random = random
         self.channels = channels
         self._seed = np.eye(1, channels, dtype=np.float32)
-        # How often a drawing failed lately, 0..1; all are thought to fail until they were seen.
+        # How often a drawing failed lately, 0..1; every drawing counts as failing until it was measured.
         self.failures = np.ones(len(drawings))
         groups = np.array(drawings.groups)
         self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
@@ -82,92 +87,101 @@ class Pools:
         self._whole = np.flatnonzero(curriculum.whole)
         self._drawn = np.flatnonzero(curriculum.whole & (groups < len(drawings.sources)))
         self._weigh(0.0)
-        self.busy = self._empty(recipe.pool)
-        self.quiet = self._empty(recipe.quiet_pool)
-        for pool in (self.busy, self.quiet):
+        self.perturbed = self._empty(recipe.perturbed_pool)
+        self.undisturbed = self._empty(recipe.undisturbed_pool)
+        for pool in (self.perturbed, self.undisturbed):
             self._refill(pool)
 
     def take(self, progress: float) -> Taken:
-        """Draws a batch, some of it disturbed.
+        """Draws a batch, and disturbs some of it.
 
         Args:
-            progress: 0..1 over the training; it decides how much of what is not whole is among the drawings.
+            progress: 0..1 over the training; it decides how many damaged and unknown drawings there are.
         """
         recipe, random = self.recipe, self.random
         self._weigh(progress)
-        busy_count = recipe.batch - recipe.quiet_batch
-        resets = switches = disturbed = 0
-        if recipe.pool == 0:
-            self.busy = self._empty(busy_count)
-            self._refill(self.busy)
-            self._busy_taken = np.arange(busy_count)
-        else:
-            self._busy_taken = random.choice(recipe.pool, busy_count, replace=False)
-            resets = round(recipe.reset * busy_count)
-            switches = round(recipe.switch * busy_count)
-            disturbed = resets + switches + round(recipe.scramble * busy_count)
-            for number in self._busy_taken[:resets]:
-                self.reset(self.busy, int(number))
-            for number in self._busy_taken[resets : resets + switches]:
-                self.switch(self.busy, int(number))
-            for number in self._busy_taken[resets + switches : disturbed]:
-                self.scramble(self.busy, int(number))
-        self._quiet_taken = random.choice(max(recipe.quiet_pool, 1), recipe.quiet_batch, replace=False)
-        for number in self._quiet_taken:
-            if self.quiet.age[number] >= self.quiet.life[number]:
-                self.reset(self.quiet, int(number))
-        chosen = np.concatenate((self.busy.drawing[self._busy_taken], self.quiet.drawing[self._quiet_taken]))
-        states = np.concatenate((self.busy.states[self._busy_taken], self.quiet.states[self._quiet_taken]))
+        count = recipe.batch - recipe.undisturbed_batch
+        perturbed, resets, disturbed = self._take_perturbed(count)
+        undisturbed = self._take_undisturbed()
+        chosen = np.concatenate((self.perturbed.drawing[perturbed], self.undisturbed.drawing[undisturbed]))
+        states = np.concatenate((self.perturbed.states[perturbed], self.undisturbed.states[undisturbed]))
         batch = self.drawings.batch(chosen)
-        settled = np.zeros(recipe.batch, np.bool_)
-        settled[busy_count:] = self.quiet.age[self._quiet_taken] >= recipe.quiet_rounds[0] // 2
-        late = np.zeros(recipe.batch, np.bool_)
-        late[:resets] = random.random(resets) < recipe.late
+        converged = np.zeros(recipe.batch, np.bool_)
+        converged[count:] = self.undisturbed.age[undisturbed] >= recipe.undisturbed_ticks[0] // 2
+        staggered = np.zeros(recipe.batch, np.bool_)
+        staggered[:resets] = random.random(resets) < recipe.staggered_start
         away = np.zeros(len(batch.sample), np.bool_)
-        for number in range(disturbed, disturbed + round(recipe.away * busy_count)):
+        for number in range(disturbed, disturbed + round(recipe.away * count)):
             size = self.drawings.sizes[chosen[number]]
             away[batch.starts[number] + random.integers(size, size=random.integers(1, 3))] = True
-        calm = np.arange(recipe.batch) >= busy_count
+        lossless = np.arange(recipe.batch) >= count
         chosen_states = states[batch.sample, batch.place]
         fresh = (chosen_states == self._seed).all(axis=1)
-        return Taken(batch, chosen_states, settled, Circumstances(late, away, calm, fresh))
+        given = Circumstances(staggered, away, lossless, fresh)
+        return Taken(perturbed, undisturbed, batch, chosen_states, converged, given)
 
-    def give_back(
-        self, taken: Taken, states: States, rounds: NDArray[np.int64], right: NDArray[np.bool_]
-    ) -> None:
-        """Stores what became of the batch last taken.
+    def _take_perturbed(self, count: int) -> tuple[Numbers, int, int]:
+        """Grids of the perturbed pool; of those first in it how many were reset, and how many disturbed."""
+        recipe = self.recipe
+        if recipe.perturbed_pool == 0:
+            self.perturbed = self._empty(count)
+            self._refill(self.perturbed)
+            return np.arange(count), 0, 0
+        taken = self.random.choice(recipe.perturbed_pool, count, replace=False)
+        resets = round(recipe.reset * count)
+        switched = resets + round(recipe.switch * count)
+        disturbed = switched + round(recipe.state_shuffle * count)
+        for numbers, disturb in (
+            (taken[:resets], self.reset),
+            (taken[resets:switched], self.switch),
+            (taken[switched:disturbed], self.shuffle_states),
+        ):
+            for number in numbers:
+                disturb(self.perturbed, int(number))
+        return taken, resets, disturbed
+
+    def _take_undisturbed(self) -> Numbers:
+        """Grids of the undisturbed pool; those whose time is over start anew."""
+        recipe = self.recipe
+        taken = self.random.choice(max(recipe.undisturbed_pool, 1), recipe.undisturbed_batch, replace=False)
+        for number in taken:
+            if self.undisturbed.age[number] >= self.undisturbed.lifetime[number]:
+                self.reset(self.undisturbed, int(number))
+        return taken
+
+    def give_back(self, taken: Taken, states: States, ticks: Numbers, right: NDArray[np.bool_]) -> None:
+        """Stores the end of a batch's rollouts.
 
         Args:
             taken: the batch.
             states: (N, C) float32.
-            rounds: (B,) how many rounds each tissue lived.
+            ticks: (B,) how many ticks each grid ran.
             right: (B,) whether all its tiles were right at the end.
         """
-        batch = taken.batch
-        padded = np.zeros((len(batch.starts), *self.busy.states.shape[1:]), np.float32)
+        batch, count = taken.batch, len(taken.perturbed)
+        padded = np.zeros((len(batch.starts), *self.perturbed.states.shape[1:]), np.float32)
         padded[batch.sample, batch.place] = np.where(taken.given.away[:, None], self._seed, states)
-        busy_count = len(self._busy_taken)
-        self.busy.states[self._busy_taken] = padded[:busy_count]
-        self.busy.age[self._busy_taken] += rounds[:busy_count]
-        self.busy.age[self._busy_taken[~taken.asked[:busy_count]]] = 0
-        self.quiet.states[self._quiet_taken] = padded[busy_count:]
-        self.quiet.age[self._quiet_taken] += rounds[busy_count:]
-        # Who was disturbed a moment ago may be wrong; who had time may not.
-        had_time = self.busy.age[self._busy_taken] >= HAD_TIME
-        seen = self.busy.drawing[self._busy_taken][had_time]
-        self.failures[seen] += FORGETS * (~right[:busy_count][had_time] - self.failures[seen])
+        self.perturbed.states[taken.perturbed] = padded[:count]
+        self.perturbed.age[taken.perturbed] += ticks[:count]
+        self.perturbed.age[taken.perturbed[~taken.asked[:count]]] = 0
+        self.undisturbed.states[taken.undisturbed] = padded[count:]
+        self.undisturbed.age[taken.undisturbed] += ticks[count:]
+        # A grid that was disturbed a moment ago may be wrong; converged grids must be right.
+        converged = self.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
+        seen = self.perturbed.drawing[taken.perturbed][converged]
+        self.failures[seen] += FAILURE_EMA * (~right[:count][converged] - self.failures[seen])
 
     def state(self) -> dict[str, Any]:
         """Everything that changes, as plain values and tensors for a checkpoint."""
         state: dict[str, Any] = {
             name: {field.name: torch.from_numpy(getattr(pool, field.name)) for field in fields(pool)}
-            for name, pool in (("busy", self.busy), ("quiet", self.quiet))
+            for name, pool in (("perturbed", self.perturbed), ("undisturbed", self.undisturbed))
         }
         return state | {"failures": torch.from_numpy(self.failures)}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Takes back what `state` gave."""
-        for name, pool in (("busy", self.busy), ("quiet", self.quiet)):
+        """Continues with what `state` returned."""
+        for name, pool in (("perturbed", self.perturbed), ("undisturbed", self.undisturbed)):
             for field in fields(pool):
                 setattr(pool, field.name, state[name][field.name].cpu().numpy().copy())
         self.failures = state["failures"].cpu().numpy().copy()
@@ -182,13 +196,13 @@ class Pools:
             self.reset(pool, number)
 
     def _weigh(self, progress: float) -> None:
-        """Half-way between the drawings' weights and those times how often they fail, or as `hard` says."""
+        """Chances between the drawings' weights and the weights times how often each drawing fails."""
         least, (begin, end) = 0.05, self.recipe.ramp
         grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
         weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)
         failing = weights * (self.failures + 1e-3)
-        self._chances = (1 - self.recipe.hard) * weights / weights.sum()
-        self._chances += self.recipe.hard * failing / failing.sum()
+        self._chances = (1 - self.recipe.failure_weighting) * weights / weights.sum()
+        self._chances += self.recipe.failure_weighting * failing / failing.sum()
 
     def _pick(self, among: NDArray[np.int64]) -> int:
         upto = np.cumsum(self._chances[among])
@@ -206,45 +220,45 @@ class Pools:
         return self._pick(others) if len(others) else drawing
 
     def any_states(self, count: int) -> States:
-        """(count, C) states of any tiles of the busy pool, which know nothing of each other."""
-        tissues = self.random.integers(len(self.busy.drawing), size=count)
-        return self.busy.states[
-            tissues, self.random.integers(self.drawings.sizes[self.busy.drawing[tissues]])
+        """(count, C) states of any tiles of the perturbed pool, drawn independently of each other."""
+        grids = self.random.integers(len(self.perturbed.drawing), size=count)
+        return self.perturbed.states[
+            grids, self.random.integers(self.drawings.sizes[self.perturbed.drawing[grids]])
         ]
 
-    def scramble(self, pool: Pool, number: int) -> None:
-        """Gives every tile of a tissue the state of any other."""
+    def shuffle_states(self, pool: Pool, number: int) -> None:
+        """Gives every tile of a grid the state of any tile of the pool: it must recover from it."""
         size = self.drawings.sizes[pool.drawing[number]]
         pool.states[number, :size] = self.any_states(size)
         pool.age[number] = 0
 
     def put(self, drawing: int, states: States) -> None:
-        """Into any place of the busy pool, as one that had time.
+        """Puts a grid into any place of the perturbed pool, as one that should have converged.
 
         Args:
-            drawing: which.
+            drawing: its drawing.
             states: (its cells, C).
         """
-        number = int(self.random.integers(len(self.busy.age)))
-        self.busy.drawing[number] = drawing
-        self.busy.states[number] = 0.0
-        self.busy.states[number, : len(states)] = states
-        self.busy.age[number] = HAD_TIME
+        number = int(self.random.integers(len(self.perturbed.age)))
+        self.perturbed.drawing[number] = drawing
+        self.perturbed.states[number] = 0.0
+        self.perturbed.states[number, : len(states)] = states
+        self.perturbed.age[number] = CONVERGED_AFTER
 
     def reset(self, pool: Pool, number: int) -> None:
-        """Puts down any drawing anew, every tile in its seed state."""
+        """Starts a grid anew with any drawing, every tile in its seed state."""
         among = self._everything
-        if pool is self.quiet and self.random.random() < QUIET_DRAWN:
+        if pool is self.undisturbed and self.random.random() < UNDISTURBED_DRAWN:
             among = self._drawn
         drawing = self._pick(among)
         pool.drawing[number] = drawing
         pool.states[number] = 0.0
         pool.states[number, : self.drawings.sizes[drawing], 0] = 1.0
         pool.age[number] = 0
-        pool.life[number] = self.random.integers(*self.recipe.quiet_rounds)
+        pool.lifetime[number] = self.random.integers(*self.recipe.undisturbed_ticks)
 
     def switch(self, pool: Pool, number: int) -> None:
-        """Rebuilds a tissue into another drawing of its scale; tiles that stay keep their state."""
+        """Rebuilds a grid into another drawing of its scale; tiles that stay keep their state."""
         old = int(pool.drawing[number])
         new = self.pick_other(old)
         if new == old:

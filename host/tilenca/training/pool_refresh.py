@@ -1,10 +1,10 @@
-"""Tissues live ahead by the weights that are kept: training meets states that only come with age, or rarely.
+"""Long rollouts with the EMA weights: training meets states that only come with age, or rarely.
 
-A batch sees some ten updates of a tissue, and between two batches the weights change: what drifts slowly
-under one set of weights hardly shows. The fast simulator lets the quiet tissues live for thousands of updates
-by the integers that tiles would run, and training goes on from where that led. It also lets many drawings
-begin, be rebuilt, lose a tile for a while, or begin in states of others, until they should agree: the few
-that do not are what training has to see.
+A batch sees some ten updates of a grid, and between two batches the weights change: a slow drift under one
+set of weights hardly shows. The fast simulator runs the undisturbed grids for thousands of updates with the
+integers of real tiles, and training goes on from their last states. It also mines hard examples: it starts
+many drawings, rebuilds them, switches a tile off for a while, or gives them the states of others. The few
+that do not agree in time go into the perturbed pool.
 """
 
 import math
@@ -21,11 +21,11 @@ from tilenca.simulator.simulator import Conditions, Fault, Simulator
 from tilenca.simulator.transitions import moved
 from tilenca.training.pool import Pool, Pools, States
 
-ROUNDS_PER_STEP = 3  # of training, about as many as a period of a tile takes there
+TICKS_PER_STEP = 3  # of training, about as many as one period of a tile there
 CLOCKS = Conditions("clock", boot=0.0)
 BEGINNINGS = (Conditions("random"), Conditions("clock"), Conditions("clock", loss=0.5))
-BEFORE, AGREED_BY = 50, 60  # steps that a drawing lives before something happens, and that it has to agree
-MOST_STUCK = 1 / 8  # of the busy pool
+BEFORE, AGREED_BY = 50, 60  # steps before a disturbance, and steps after it in which the tiles must agree
+MOST_HARD_EXAMPLES = 1 / 8  # of the perturbed pool
 
 
 def as_integers(states: States) -> NDArray[np.int16]:
@@ -33,16 +33,16 @@ def as_integers(states: States) -> NDArray[np.int16]:
     return np.rint(states * SEED_STATE).clip(-STATE_MAX, STATE_MAX).astype(np.int16)
 
 
-def live_ahead(
+def refresh_undisturbed(
     model: Model, pool: Pool, drawings: Drawings, steps: tuple[int, int], random: np.random.Generator
 ) -> None:
-    """Lets all tissues of a pool live for some steps on tiles' clocks, without losses.
+    """Runs all grids of a pool for some steps on tiles' clocks, without losses.
 
     Args:
-        model: by which they live.
-        pool: the tissues; states and ages are changed.
+        model: the network.
+        pool: the grids; states and ages are changed.
         drawings: those that `pool.drawing` counts.
-        steps: least and most; the number is drawn evenly on a scale of ratios.
+        steps: least and most; the logarithm of the number is drawn uniformly.
         random: the only source of chance.
     """
     least, most = map(math.log, steps)
@@ -52,31 +52,31 @@ def live_ahead(
     simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states)
     simulator.run(count)
     pool.states[batch.sample, batch.place] = simulator.states / np.float32(SEED_STATE)
-    pool.age += count * ROUNDS_PER_STEP
+    pool.age += count * TICKS_PER_STEP
 
 
-def put_what_is_stuck(model: Model, pools: Pools, runs: int, random: np.random.Generator) -> int:
-    """Puts whole drawings that do not agree in time into the busy pool, in the state they came to.
+def mine_hard_examples(model: Model, pools: Pools, runs: int, random: np.random.Generator) -> int:
+    """Puts whole drawings that do not agree in time into the perturbed pool, with their last states.
 
     Args:
-        model: by which they live.
-        pools: where they go.
-        runs: drawings of the files to try in each way, beside some of other sizes.
+        model: the network.
+        pools: the destination.
+        runs: drawings of the files to try with each kind of beginning, beside some of other sizes.
         random: the only source of chance.
 
     Returns:
         How many did not agree.
     """
-    stuck = []
+    hard = []
     for trial in _trials(FastEngine(model), pools, runs, random):
         wrong = ~trial.run(AGREED_BY).agreed[-1]
         for run in np.flatnonzero(wrong):
             cells = trial.batch.sample == run
-            stuck.append((trial.chosen[run], trial.states[cells] / np.float32(SEED_STATE)))
-    most = round(len(pools.busy.age) * MOST_STUCK)
-    for number in random.permutation(len(stuck))[:most]:
-        pools.put(*stuck[number])
-    return len(stuck)
+            hard.append((trial.chosen[run], trial.states[cells] / np.float32(SEED_STATE)))
+    most = round(len(pools.perturbed.age) * MOST_HARD_EXAMPLES)
+    for number in random.permutation(len(hard))[:most]:
+        pools.put(*hard[number])
+    return len(hard)
 
 
 def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Generator) -> Iterator[Simulator]:

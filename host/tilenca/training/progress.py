@@ -1,4 +1,4 @@
-"""What a training run tells of its progress. No torch here: views import it."""
+"""Progress reports of a training run. No torch here: views import it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Progress:
-    """What a run tells now and then.
+    """One report of a run.
 
     Attributes:
-        seed: whose it is.
-        iteration: how far it is.
+        seed: of the run.
+        iteration: how many are done.
         loss, agreement: means over the last iterations.
         check: targets held, targets and shortfall in the last short measurement; None: none yet.
     """

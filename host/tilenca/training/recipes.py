@@ -1,4 +1,4 @@
-"""Named ways to train a model. A recipe is all that decides the result, beside the shapes and the seed."""
+"""Named ways to train a model. Recipe, shapes and seed decide the result, and nothing else does."""
 
 from dataclasses import dataclass, replace
 
@@ -10,51 +10,58 @@ from tilenca.evaluation.suites import Aims
 class Recipe:
     """How to train.
 
-    A *round* is one step of training, in which some of the tiles update; rates are fractions 0..1.
+    A *tick* is one step of a rollout, in which some of the tiles update; rates are fractions 0..1.
 
     Attributes:
         hidden: width of both hidden layers, where `--hidden` does not say.
         seeds: trainings side by side, of which the best is kept, where `--seeds` does not say.
         iterations: optimiser steps.
-        batch: drawings per optimiser step, those of the quiet pool included.
-        rounds: least and most rounds per optimiser step; up to twice as many for large drawings.
+        batch: drawings per optimiser step, those of the undisturbed pool included.
+        ticks: least and most ticks of a rollout; up to twice as many for large drawings.
         learning_rate: Adam's; it falls by the share `cosine` of it, along a cosine over the iterations.
         clip_norm: limit of the gradient's norm; 0: none.
-        average: how much of the running mean of the weights, which is what is kept, stays in every iteration;
-            0: the last weights are kept.
-        bounded: the tile's own arithmetic in the loop: clamped states and activations, byte messages.
-        pool: tissues kept from one iteration to the next; 0: every sample starts from the seed state.
-        reset: share of what is not of the quiet pool that is taken back to the seed state.
-        late: share of the samples taken back to the seed in which tiles are switched on one after the other;
-            what the first ones make of it is not held against them, but they must get over it later.
-        switch: share of it that is rebuilt into another drawing while running.
-        scramble: share of it whose tiles get states of any others: from anywhere they must find back.
-        away: share of it in which a tile or two are off for once; what the others make of it is not held
-            against them.
-        quiet_pool: tissues left undisturbed for `quiet_rounds` rounds, without losses: nothing may drift.
-        quiet_batch: how many of them are in each batch.
-        quiet_rounds: least and most rounds of an undisturbed life.
-        ahead_every: iterations after which quiet tissues live ahead by the weights that are kept; 0: never.
-        ahead: least and most steps that they then live.
-        trials: of the files' drawings that then try each way to begin; the pool gets who does not agree.
-        quiet_penalty: weight of the squared change of settled states over one iteration.
-        fire_rate: least and most share of tiles that update in a round, drawn for each sample.
+        ema_decay: decay per iteration of the exponential moving average (EMA) of the weights, which becomes
+            the model; 0: the last weights become the model.
+        quantisation_aware: train with the tile's own arithmetic: clamped states and activations, byte
+            messages.
+        perturbed_pool: grids whose rollouts go on in the next iteration; 0: every sample starts from the seed
+            state.
+        reset: share of the perturbed samples that start anew from the seed state.
+        staggered_start: share of the samples that start anew in which tiles are switched on one after the
+            other; their first results do not count, but later ones must be right.
+        switch: share of the perturbed samples that are rebuilt into another drawing while running.
+        state_shuffle: share of the perturbed samples whose tiles get states of any other tiles; the network
+            learns to recover from arbitrary states.
+        away: share of the perturbed samples in which a tile or two are off for once; the results of the other
+            tiles do not count.
+        undisturbed_pool: grids left undisturbed for `undisturbed_ticks` ticks, without losses: nothing may
+            drift.
+        undisturbed_batch: how many of them are in each batch.
+        undisturbed_ticks: least and most ticks of an undisturbed grid, until it starts anew.
+        refresh_every: iterations after which the undisturbed grids run long rollouts with the EMA weights; 0:
+            never.
+        refresh_steps: least and most steps of those rollouts.
+        trials: drawings of the files to try with each kind of beginning, to mine hard examples: those that do
+            not agree go into the perturbed pool.
+        stability_penalty: weight of the squared change of converged states over one iteration.
+        fire_rate: least and most share of tiles that update in a tick, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
-        rounds_per_period: least and most rounds that one period of such a clock takes.
+        ticks_per_period: least and most ticks that one period of such a clock takes.
         drift: largest relative difference of a tile's period from the nominal one.
         latency: least and most delay of a message, in periods.
         lossy: share of samples that lose messages; a lost one reads as zero.
         max_loss: largest share of messages lost.
-        longest_loss: most rounds that the loss of a neighbour's messages lasts.
-        unheard: share of samples in which what a tile sends is now and then heard by nobody; its neighbours
-            go on with what they heard before.
-        max_unheard: largest share of messages that nobody hears.
+        longest_loss: most ticks that the loss of a neighbour's messages lasts.
+        stale: share of samples in which all neighbours of a tile miss a message now and then; they go on with
+            the stale message before it.
+        max_stale: largest share of messages that all neighbours miss.
         stretch: largest factor by which drawings are stretched, where the shape file has sizes; 1: not.
-        stretched: share of stretched drawings among the tissues.
+        stretched: share of stretched drawings among the grids.
         damaged: share of drawings with one tile missing.
         unknown: share of drawings of no class, whose tiles learn to show a dash.
         ramp: between these shares of the iterations damaged and unknown drawings grow to their full share.
-        hard: how much of the choice of drawings goes by how often each failed lately.
+        failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
+            often each failed lately.
         check_every: iterations from one short measurement to the next; training ends early when all targets
             hold in several of them; 0: never.
         validation_runs: runs of each drawing in the final measurement.
@@ -63,82 +70,82 @@ class Recipe:
     hidden: int
     iterations: int
     batch: int
-    rounds: tuple[int, int]
+    ticks: tuple[int, int]
     learning_rate: float
     cosine: float
     clip_norm: float
-    bounded: bool
+    quantisation_aware: bool
     seeds: int = 1
-    average: float = 0.0
-    pool: int = 0
+    ema_decay: float = 0.0
+    perturbed_pool: int = 0
     reset: float = 0.0
-    late: float = 0.0
+    staggered_start: float = 0.0
     switch: float = 0.0
-    scramble: float = 0.0
+    state_shuffle: float = 0.0
     away: float = 0.0
-    quiet_pool: int = 0
-    quiet_batch: int = 0
-    quiet_rounds: tuple[int, int] = (200, 4000)
-    ahead_every: int = 0
-    ahead: tuple[int, int] = (50, 3000)
+    undisturbed_pool: int = 0
+    undisturbed_batch: int = 0
+    undisturbed_ticks: tuple[int, int] = (200, 4000)
+    refresh_every: int = 0
+    refresh_steps: tuple[int, int] = (50, 3000)
     trials: int = 300
-    quiet_penalty: float = 0.0
+    stability_penalty: float = 0.0
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
-    rounds_per_period: tuple[float, float] = (2.0, 4.0)
+    ticks_per_period: tuple[float, float] = (2.0, 4.0)
     drift: float = 0.01
     latency: tuple[float, float] = (0.1, 0.9)
     lossy: float = 0.0
     max_loss: float = 0.0
     longest_loss: int = 1
-    unheard: float = 0.0
-    max_unheard: float = 0.0
+    stale: float = 0.0
+    max_stale: float = 0.0
     stretch: float = 1.0
     stretched: float = 0.0
     damaged: float = 0.0
     unknown: float = 0.0
     ramp: tuple[float, float] = (0.0, 0.0)
-    hard: float = 0.0
+    failure_weighting: float = 0.0
     check_every: int = 0
     validation_runs: int = 100
 
 
-# What real tiles need: nobody is reset, clocks differ, messages and tiles get lost, states never drift,
-# and a shape that is none of the task's must not be taken for one.
+# What real tiles need: no tile is reset, clocks differ, messages and tiles get lost, states never drift,
+# and tiles do not name a shape that is none of the task's.
 FULL = Recipe(
     hidden=96,
     iterations=40_000,
     batch=32,
-    rounds=(14, 34),
+    ticks=(14, 34),
     learning_rate=1e-3,
     cosine=0.9,
     clip_norm=1.0,
-    average=0.9995,
-    bounded=True,
-    pool=640,
+    ema_decay=0.9995,
+    quantisation_aware=True,
+    perturbed_pool=640,
     reset=0.15,
-    late=0.5,
+    staggered_start=0.5,
     switch=0.3,
-    scramble=0.05,
+    state_shuffle=0.05,
     away=0.1,
-    quiet_pool=128,
-    quiet_batch=12,
-    quiet_rounds=(200, 20_000),
-    ahead_every=500,
-    quiet_penalty=0.05,
+    undisturbed_pool=128,
+    undisturbed_batch=12,
+    undisturbed_ticks=(200, 20_000),
+    refresh_every=500,
+    stability_penalty=0.05,
     fire_rate=(0.3, 0.9),
     clocks=0.5,
     lossy=0.5,
     max_loss=0.3,
     longest_loss=3,
-    unheard=0.5,
-    max_unheard=0.7,
+    stale=0.5,
+    max_stale=0.7,
     stretch=10.0,
     stretched=0.28,
     damaged=0.2,
     unknown=0.27,
     ramp=(0.05, 0.2),
-    hard=0.6,
+    failure_weighting=0.6,
     check_every=4_000,
     validation_runs=500,
 )
@@ -162,11 +169,11 @@ RECIPES: dict[str, Recipe] = {
         hidden=40,
         iterations=2_500,
         batch=128,
-        rounds=(9, 29),
+        ticks=(9, 29),
         learning_rate=1e-3,
         cosine=0.0,
         clip_norm=0.0,
-        bounded=False,
+        quantisation_aware=False,
     ),
     # Seconds long and of no use on tiles: shows that the whole chain works.
     "smoke": replace(
@@ -175,12 +182,12 @@ RECIPES: dict[str, Recipe] = {
         seeds=1,
         iterations=40,
         batch=8,
-        rounds=(4, 8),
-        pool=32,
-        quiet_pool=8,
-        quiet_batch=2,
-        ahead_every=15,
-        ahead=(5, 20),
+        ticks=(4, 8),
+        perturbed_pool=32,
+        undisturbed_pool=8,
+        undisturbed_batch=2,
+        refresh_every=15,
+        refresh_steps=(5, 20),
         trials=5,
         stretch=1.5,
         check_every=20,

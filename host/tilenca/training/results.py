@@ -1,4 +1,4 @@
-"""Writes a trained model, its card, metrics and history; never over a better one."""
+"""Writes a trained model, its card, metrics and history, but never over a better one."""
 
 import csv
 import io
@@ -15,12 +15,12 @@ from tilenca.model.file import Model
 
 @dataclass(frozen=True)
 class Result:
-    """What training brought.
+    """The result of a training.
 
     Attributes:
         model: the integer model.
-        metrics: of `validation.validate`, and how training ended.
-        history: (iteration, loss, agreement) now and then.
+        metrics: of `metrics.validate`, and how training ended.
+        history: (iteration, loss, agreement) at intervals.
         checks: (iteration, shortfall, share by kind of question) of the short measurements.
     """
 
@@ -33,7 +33,7 @@ class Result:
 def keep(directory: Path, result: Result) -> Path:
     """Writes the model; returns where.
 
-    Where a better model of the same classes lies already, the new one goes into a folder beside its files.
+    A better model of the same classes stays; the new one then goes into a folder beside its files.
 
     Raises:
         TilencaError: the disk is full or not writable.
@@ -61,7 +61,7 @@ def _better(directory: Path, result: Result) -> float | None:
         old = json.loads((directory / "model.json").read_text(encoding="utf-8"))
         same = (
             tuple(old["labels"]) == result.model.labels
-            and old["made"]["sources"] == result.model.made["sources"]
+            and old.get("metadata", old.get("made"))["sources"] == result.model.metadata["sources"]
         )
     except (OSError, ValueError, KeyError, TypeError):
         return None

@@ -1,6 +1,6 @@
 """Training's inner loop, compiled for this machine: tools/training behind torch tensors.
 
-`make setup` builds the library. What it computes is said in plain PyTorch by `rollout.live_by_autograd`.
+`make setup` builds the library. `rollout.rollout_by_autograd` computes the same in plain PyTorch.
 """
 
 import ctypes
@@ -28,24 +28,24 @@ class _CNet(ctypes.Structure):
     )
 
 
-class _CLife(ctypes.Structure):
-    """`Life`, the same."""
+class _CRollout(ctypes.Structure):
+    """`Life` of the same header."""
 
     _fields_ = (
         ("cells", ctypes.c_int32),
-        ("rounds", ctypes.c_int32),
-        *((name, ctypes.c_void_p) for name in ("counts", "who", "reads", "arrives")),
+        ("ticks", ctypes.c_int32),
+        *((name, ctypes.c_void_p) for name in ("counts", "updating", "reads", "arrives")),
     )
 
 
 class _CTape(ctypes.Structure):
-    """`Tape`, the same."""
+    """`Tape` of the same header."""
 
     _fields_ = tuple((name, ctypes.c_void_p) for name in ("seen", "hidden1", "hidden2", "after"))
 
 
 class Tape(NamedTuple):
-    """What E updates saw and did, or the gradients of it: (E, width) float32 each, rows padded."""
+    """Inputs and results of E updates, or their gradients: (E, width) float32 each, rows padded."""
 
     seen: Tensor
     hidden1: Tensor
@@ -76,17 +76,17 @@ def library(path: Path = LIBRARY) -> ctypes.CDLL:
     return found
 
 
-class Life:
-    """A network and a schedule as the library wants them; keeps alive what it points to.
+class KernelRollout:
+    """A network and a schedule in the library's form; keeps the arrays alive to which it points.
 
     Args:
         weights: w1, b1, w2, b2, w3, b3 as `TileNet.weights` gives them, float32.
         limit: of states and activations in the tile's whole numbers; None: plain real numbers.
         cells: N.
-        counts: (T,) int64, updates of each round.
-        who: (E,) int32, the cell that updates.
-        reads: (E, 5) int32, rows it perceives: own, N + own as heard, 2 N for nobody's.
-        arrives: (T, N) bool, at the end of the round the neighbours hear the cell.
+        counts: (T,) int64, updates of each tick.
+        updating: (E,) int32, the cell of each update.
+        reads: (E, 5) int32, rows it perceives: own, N + own as received, 2 N for an absent neighbour.
+        arrives: (T, N) bool, at the end of the tick the neighbours receive the cell's message.
     """
 
     def __init__(
@@ -95,25 +95,25 @@ class Life:
         limit: float | None,
         cells: int,
         counts: Tensor,
-        who: Tensor,
+        updating: Tensor,
         reads: Tensor,
         arrives: Tensor,
     ) -> None:
-        self._alive = [tensor.contiguous() for tensor in (*weights, counts, who, reads, arrives)]
+        self._alive = [tensor.contiguous() for tensor in (*weights, counts, updating, reads, arrives)]
         w1, _, w2, _, w3, _ = weights
         pointers = [tensor.data_ptr() for tensor in self._alive]
         self.widths = (w1.shape[1], len(w1), len(w2), len(w3))
         infinite = float("inf") if limit is None else limit
         self._net = _CNet(len(w3), len(w1), len(w2), limit is not None, infinite, *pointers[:6])
-        self._life = _CLife(cells, len(counts), *pointers[6:])
-        self.updates = len(who)
+        self._rollout = _CRollout(cells, len(counts), *pointers[6:])
+        self.updates = len(updating)
 
     def forward(self, state: Tensor) -> Tape:
-        """Lives; `state` (N, C) float32 is changed in place."""
+        """Runs the updates; `state` (N, C) float32 is changed in place."""
         tape = make_tape(self.updates, *self.widths)
         library().tilenca_life_forward(
             ctypes.byref(self._net),
-            ctypes.byref(self._life),
+            ctypes.byref(self._rollout),
             ctypes.c_void_p(state.data_ptr()),
             ctypes.byref(_pointers(tape)),
         )
@@ -124,7 +124,7 @@ class Life:
         gradients = make_tape(self.updates, 0, *self.widths[1:])
         library().tilenca_life_backward(
             ctypes.byref(self._net),
-            ctypes.byref(self._life),
+            ctypes.byref(self._rollout),
             ctypes.c_void_p(d_state.data_ptr()),
             ctypes.byref(_pointers(tape)),
             ctypes.byref(_pointers(gradients)),

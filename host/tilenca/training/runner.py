@@ -1,4 +1,4 @@
-"""One seed's training from start, or checkpoint, to end; alone or beside others in processes of their own."""
+"""Runs the training of one seed, from start or checkpoint to end, or of several seeds side by side."""
 
 import multiprocessing
 import os
@@ -16,8 +16,8 @@ import torch
 
 from tilenca.base.errors import InterruptedRunError, TilencaError
 from tilenca.base.signals import SIGNALS
-from tilenca.evaluation.metrics import Examiner
-from tilenca.evaluation.suites import Exam, set_exam
+from tilenca.evaluation.metrics import Evaluator
+from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.sizes import Sizes
@@ -32,13 +32,13 @@ CHECKPOINT_EVERY_S = 45.0
 TELL_EVERY_S = 0.2
 CHECK_RUNS = 10  # of each drawing in the measurements during training
 CLOSER_RUNS = 40  # of each drawing where all targets held with fewer
-HOLDS_TO_END = 3  # of them in a row in which all targets must hold to end early
+HOLDS_TO_END = 3  # measurements in a row in which all targets must hold, to end early
 ENDING = (signal.SIGINT, *SIGNALS)
 
 
 @dataclass(frozen=True)
 class Job:
-    """What one process trains.
+    """The task of one process.
 
     Attributes:
         config: of the run; its labels are those of the curriculum.
@@ -86,11 +86,13 @@ def train(job: Job, tell: Tell) -> Trained:
         trainer = make_trainer(job)
         recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
         check: tuple[int, int, float] | None = None
-        exam = set_exam(job.task, job.sizes, job.config.labels, aims_of(job.config.recipe), job.config.seed)
+        suite = make_suite(
+            job.task, job.sizes, job.config.labels, aims_of(job.config.recipe), job.config.seed
+        )
         while not trainer.done:
             trainer.step()
             if recipe.check_every and trainer.iteration % recipe.check_every == 0:
-                check = _check(trainer, exam)
+                check = _check(trainer, suite)
             if interrupted() or time.monotonic() - saved > CHECKPOINT_EVERY_S:
                 trainer.save(job.checkpoint)
                 saved = time.monotonic()
@@ -99,15 +101,15 @@ def train(job: Job, tell: Tell) -> Trained:
             if time.monotonic() - told > TELL_EVERY_S or trainer.done:
                 tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
                 told = time.monotonic()
-        trainer.save(job.checkpoint)  # measuring takes a while, and can be interrupted too
+        trainer.save(job.checkpoint)  # measuring takes a while, and Ctrl-C can interrupt it too
         return trainer.best()
 
 
-def _check(trainer: Trainer, exam: Exam) -> tuple[int, int, float]:
+def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
     """A short measurement; ends the training when all targets held several times in a row."""
     model, _ = model_of(trainer.now(), {})
     for runs in (CHECK_RUNS, CLOSER_RUNS):
-        rows = list(Examiner(FastEngine(model), exam, runs, trainer.config.seed + runs).short_rows())
+        rows = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
         if shortfall := sum(row.shortfall for row in rows):
             break
     shares = {row.key: min(other.share for other in rows if other.key == row.key) for row in rows}
@@ -122,7 +124,7 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[st
     """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
 
     Returns:
-        What went wrong, one line for each run that failed; the others went on to their end.
+        One line for each run that failed; the others ran to their end.
 
     Raises:
         InterruptedRunError: Ctrl-C; every run that had begun has its checkpoint.
@@ -146,7 +148,7 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[st
                 job = waiting.pop(0)
                 ours, theirs = context.Pipe(duplex=False)
                 process = context.Process(target=_in_process, args=(job, theirs), daemon=True)
-                with _deaf_to_ctrl_c():  # until it can save its work, it is ended by us
+                with _deaf_to_ctrl_c():  # until it can save its work, the parent stops it
                     process.start()
                 theirs.close()
                 running[ours] = process
@@ -176,7 +178,7 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[st
 
 @contextmanager
 def _deaf_to_ctrl_c() -> Iterator[None]:
-    """What is started in here ignores Ctrl-C, until it says otherwise."""
+    """Processes started in this context ignore Ctrl-C, until they handle it themselves."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield
@@ -198,7 +200,7 @@ def _in_process(job: Job, connection: "Connection") -> None:
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C waits for the end of the step, so that what is saved is whole; a second one does not."""
+    """Ctrl-C waits for the end of the step, so that the checkpoint is whole; a second one does not."""
     caught: list[int] = []
 
     def note(number: int, _frame: object) -> None:
@@ -206,7 +208,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         if number == signal.SIGINT:
             signal.signal(number, signal.default_int_handler)
 
-    # What whoever started us ignores (nohup) stays ignored; Ctrl-C is ours.
+    # Signals that the parent process ignores (nohup) stay ignored, but for Ctrl-C.
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:

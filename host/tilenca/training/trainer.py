@@ -1,4 +1,4 @@
-"""The training loop: draw tissues, let them live for some rounds, and pull every cell towards its class.
+"""The training loop: draw grids, run short rollouts, and pull the state of every cell towards its class.
 
 Reads top to bottom: `Trainer.step` is one optimiser step. Everything random comes from one numpy generator,
 whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
@@ -22,12 +22,12 @@ from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.curriculum import Curriculum
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
-from tilenca.training.pool_refresh import live_ahead, put_what_is_stuck
+from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
 from tilenca.training.recipes import Recipe
-from tilenca.training.rollout import live
+from tilenca.training.rollout import rollout
 from tilenca.training.update_schedule import draw_schedule
 
-TILES_PER_LIFE, LONGEST_LIFE = 16, 2.0
+TILES_PER_ROLLOUT, LONGEST_ROLLOUT = 16, 2.0
 HISTORY_ROWS, HISTORY_EVERY = 200, 100  # so many rows at least, one for so many iterations at most
 
 
@@ -56,14 +56,14 @@ class Config:
 
 @dataclass(frozen=True)
 class Trained:
-    """What a training run has brought.
+    """The result of a training run.
 
     Attributes:
         config: of the run.
-        weights: those to keep, float32 by name, as `Model.floats` wants them.
-        kept: the iteration they are of.
-        iteration: how many it took.
-        ended: whether before the last one, since all targets held.
+        weights: the best, float32 by name, as `Model.floats` wants them.
+        best_iteration: the iteration of these weights.
+        iteration: how many iterations were done.
+        ended: whether it ended before the last one, since all targets held.
         history: (iteration, loss, agreement), means since the row before.
         checks: (iteration, shortfall, smallest share by kind of question) of the short measurements.
         done: whether there is nothing left to train.
@@ -71,7 +71,7 @@ class Trained:
 
     config: Config
     weights: dict[str, NDArray[np.float32]]
-    kept: int
+    best_iteration: int
     iteration: int
     ended: bool
     history: list[tuple[int, float, float]]
@@ -81,7 +81,7 @@ class Trained:
 
 @dataclass(frozen=True)
 class StepReport:
-    """What one optimiser step saw: mean squared error per cell, share of samples with every cell right."""
+    """One optimiser step: mean squared error per cell, share of samples with every cell right."""
 
     iteration: int
     loss: float
@@ -93,8 +93,8 @@ class Trainer:
 
     Args:
         config: what to train.
-        curriculum: what to look at; must be made of the task that `config` names.
-        device: where the tensors live.
+        curriculum: the drawings; made of the task that `config` names.
+        device: of the tensors.
     """
 
     def __init__(self, config: Config, curriculum: Curriculum, device: torch.device) -> None:
@@ -103,10 +103,12 @@ class Trainer:
         self.device = device
         self.random = np.random.default_rng(config.seed)
         self.net = TileNet(
-            config.dimensions, config.recipe.bounded, initial_arrays(config.dimensions, self.random)
+            config.dimensions,
+            config.recipe.quantisation_aware,
+            initial_arrays(config.dimensions, self.random),
         ).to(device)
-        # What is kept in the end: the mean of the last thousand or so weights, far steadier than any of them.
-        self.average = {name: value.detach().clone() for name, value in self.net.named_parameters()}
+        # The EMA becomes the model: a mean of the last thousand or so weights, far steadier than each.
+        self.ema = {name: value.detach().clone() for name, value in self.net.named_parameters()}
         self.optimizer = torch.optim.Adam(self.net.parameters(), lr=config.recipe.learning_rate)
         self.pools = Pools(config.recipe, curriculum, config.dimensions.channels, self.random)
         self.iteration = 0
@@ -114,7 +116,7 @@ class Trainer:
         self.history: list[tuple[int, float, float]] = []  # iteration, and means since the row before
         self.checks: list[tuple[int, float, dict[str, float]]] = []  # iteration, shortfall, shares right
         self._since: list[tuple[float, float]] = []
-        # Of the measured means that which fell short least: iteration, by how much, weights.
+        # The measured EMA with the least shortfall: iteration, shortfall, weights.
         self._best: tuple[int, float, dict[str, Tensor]] | None = None
 
     @property
@@ -123,7 +125,7 @@ class Trainer:
         return self.ended or self.iteration >= self.config.recipe.iterations
 
     def recent(self) -> tuple[float, float]:
-        """Mean loss and agreement of the last iterations, for the eye."""
+        """Mean loss and agreement of the last iterations, to be shown."""
         if not self._since:
             return self.history[-1][1:] if self.history else (math.nan, math.nan)
         losses, agreements = zip(*self._since, strict=True)
@@ -138,28 +140,28 @@ class Trainer:
         recipe = self.config.recipe
         taken = self.pools.take(self.iteration / recipe.iterations)
         batch = taken.batch
-        lives = self._lives(batch)
-        schedule = draw_schedule(recipe, batch, lives, self.random, taken.given)
+        lengths = self._lengths(batch)
+        schedule = draw_schedule(recipe, batch, lengths, self.random, taken.given)
 
         start = torch.from_numpy(taken.states).to(self.device)
-        end = live(self.net, start * self.net.units, schedule) / self.net.units
+        end = rollout(self.net, start * self.net.units, schedule) / self.net.units
         target = torch.from_numpy(batch.target).to(self.device)
         scores = end[:, -len(self.config.labels) :]
         wanted = torch.nn.functional.one_hot(target, scores.shape[1]).to(scores.dtype)
         counts = torch.from_numpy(taken.asked[batch.sample]).to(self.device)
         loss = ((scores - wanted).square().sum(dim=1) * counts).mean()
-        if recipe.quiet_penalty > 0:
-            # Only where all is well: a settled wrong answer must stay free to change.
-            still = torch.from_numpy(taken.settled[batch.sample]).to(self.device)
+        if recipe.stability_penalty > 0:
+            # Only where every tile is right: a converged wrong answer must stay free to change.
+            still = torch.from_numpy(taken.converged[batch.sample]).to(self.device)
             still &= scores.argmax(dim=1) == target
-            loss = loss + recipe.quiet_penalty * ((end - start).square().sum(dim=1) * still).mean()
+            loss = loss + recipe.stability_penalty * ((end - start).square().sum(dim=1) * still).mean()
 
         self._descend(loss)
         right = _all_right(scores, target, batch)
-        self.pools.give_back(taken, end.detach().cpu().numpy(), lives, right)
+        self.pools.give_back(taken, end.detach().cpu().numpy(), lengths, right)
         self.iteration += 1
-        if recipe.ahead_every and self.iteration % recipe.ahead_every == 0:
-            self._live_ahead()
+        if recipe.refresh_every and self.iteration % recipe.refresh_every == 0:
+            self._refresh_pools()
         report = StepReport(self.iteration, loss.item(), float(right.mean()))
         self._since.append((report.loss, report.agreement))
         if self.iteration % max(1, min(HISTORY_EVERY, recipe.iterations // HISTORY_ROWS)) == 0:
@@ -167,12 +169,12 @@ class Trainer:
             self._since.clear()
         return report
 
-    def _lives(self, batch: Batch) -> NDArray[np.int64]:
-        """Rounds that each sample lives: drawn from the recipe's range, more where the sample is large."""
-        least, most = self.config.recipe.rounds
-        rounds = int(self.random.integers(least, most + 1))
+    def _lengths(self, batch: Batch) -> NDArray[np.int64]:
+        """(B,) ticks of each rollout: drawn from the recipe's range, more where the sample is large."""
+        least, most = self.config.recipe.ticks
+        ticks = int(self.random.integers(least, most + 1))
         tiles = np.diff(np.append(batch.starts, len(batch.sample)))
-        return np.round(rounds * np.clip(tiles / TILES_PER_LIFE, 1, LONGEST_LIFE)).astype(np.int64)
+        return np.round(ticks * np.clip(tiles / TILES_PER_ROLLOUT, 1, LONGEST_ROLLOUT)).astype(np.int64)
 
     def _descend(self, loss: Tensor) -> None:
         recipe = self.config.recipe
@@ -190,43 +192,43 @@ class Trainer:
         if recipe.clip_norm > 0:
             torch.nn.utils.clip_grad_norm_(self.net.parameters(), recipe.clip_norm)
         self.optimizer.step()
-        if recipe.bounded:
+        if recipe.quantisation_aware:
             self.net.project()
-        keep = min(recipe.average, self.iteration / (self.iteration + 10))
+        keep = min(recipe.ema_decay, self.iteration / (self.iteration + 10))
         with torch.no_grad():
             for name, value in self.net.named_parameters():
-                self.average[name].lerp_(value, 1 - keep)
+                self.ema[name].lerp_(value, 1 - keep)
 
-    def _live_ahead(self) -> None:
+    def _refresh_pools(self) -> None:
         model, _ = model_of(self.now(), {})
         recipe = self.config.recipe
-        live_ahead(model, self.pools.quiet, self.drawings, recipe.ahead, self.random)
-        put_what_is_stuck(model, self.pools, recipe.trials, self.random)
+        refresh_undisturbed(model, self.pools.undisturbed, self.drawings, recipe.refresh_steps, self.random)
+        mine_hard_examples(model, self.pools, recipe.trials, self.random)
 
     def now(self) -> Trained:
-        """What it has come to."""
-        return self._trained(self.iteration, self.average)
+        """The result so far."""
+        return self._trained(self.iteration, self.ema)
 
     def best(self) -> Trained:
-        """What was measured best; what it has come to where nothing was measured."""
+        """The best measured result; the result so far where nothing was measured."""
         if self._best is None:
             return self.now()
         iteration, _, weights = self._best
         return self._trained(iteration, weights)
 
     def measured(self, shortfall: float, shares: dict[str, float]) -> None:
-        """Notes what a measurement of `now()` found."""
+        """Notes the result of a measurement of `now()`."""
         self.checks.append((self.iteration, shortfall, shares))
         if self._best is None or shortfall <= self._best[1]:
-            weights = {name: value.clone() for name, value in self.average.items()}
+            weights = {name: value.clone() for name, value in self.ema.items()}
             self._best = (self.iteration, shortfall, weights)
 
-    def _trained(self, kept: int, tensors: dict[str, Tensor]) -> Trained:
+    def _trained(self, best_iteration: int, tensors: dict[str, Tensor]) -> Trained:
         weights = {name: value.cpu().numpy().copy() for name, value in tensors.items()}
         return Trained(
             self.config,
             weights,
-            kept,
+            best_iteration,
             self.iteration,
             self.ended,
             self.history,
@@ -242,7 +244,7 @@ class Trainer:
             "ended": self.ended,
             "done": self.done,
             "net": self.net.state_dict(),
-            "average": self.average,
+            "ema": self.ema,
             "best": self._best,
             "optimizer": self.optimizer.state_dict(),
             "pools": self.pools.state(),
@@ -262,26 +264,28 @@ class Trainer:
         self.history, self._since, self.checks = (
             [tuple(row) for row in state[rows]] for rows in ("history", "since", "checks")
         )
-        self.average, self._best = state["average"], state["best"]
+        self.ema, self._best = state["ema"], state["best"]
         self.iteration, self.ended = state["iteration"], state["ended"]
 
 
 def trained_at(path: Path, config: Config) -> Trained:
-    """What a checkpoint holds for the world, without what only training needs.
+    """The result that a checkpoint holds, without the state that only training needs.
 
     Raises:
         UsageError: see `read_checkpoint`.
     """
     state = read_checkpoint(path, config.as_json(), torch.device("cpu"))
-    kept, _, tensors = state["best"] or (state["iteration"], None, state["average"])
+    best_iteration, _, tensors = state["best"] or (state["iteration"], None, state["ema"])
     weights = {name: value.numpy() for name, value in tensors.items()}
     history, checks = ([tuple(row) for row in state[rows]] for rows in ("history", "checks"))
-    return Trained(config, weights, kept, state["iteration"], state["ended"], history, checks, state["done"])
+    return Trained(
+        config, weights, best_iteration, state["iteration"], state["ended"], history, checks, state["done"]
+    )
 
 
-def model_of(trained: Trained, made: dict[str, object]) -> tuple[Model, int]:
-    """The integer model of what was trained, and how many weights had to be cut."""
-    return quantise(trained.config.dimensions, trained.config.labels, trained.weights, made)
+def model_of(trained: Trained, metadata: dict[str, object]) -> tuple[Model, int]:
+    """The integer model of a training, and how many weights had to be cut."""
+    return quantise(trained.config.dimensions, trained.config.labels, trained.weights, metadata)
 
 
 def _all_right(scores: Tensor, target: Tensor, batch: Batch) -> NDArray[np.bool_]:

@@ -1,10 +1,11 @@
-"""Which tile updates when, in training, and what its neighbours have heard of it by then.
+"""The order of updates in training, and the messages that neighbours have received by then.
 
 Both schedules become the same list of updates, so that one loop trains on a mixture of them:
 
-- the paper's sampler: in every round each tile updates with the sample's fire rate, and is heard at once;
+- the paper's sampler: in every tick each tile updates with the sample's fire rate, and its neighbours receive
+  the message at once;
 - the tiles' own clocks: each tile updates once per period at its own phase, its period slightly its own, and
-  its neighbours read what it sent last, a little after it was sent.
+  its neighbours read the last message, a little after it was sent.
 """
 
 from collections.abc import Iterator
@@ -21,41 +22,41 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Schedule:
-    """E updates in T rounds of N cells.
+class UpdateSchedule:
+    """E updates in T ticks of N cells.
 
     Attributes:
-        counts: (T,) int64, updates of each round.
-        who: (E,) int32, which cell updates, round by round.
+        counts: (T,) int64, updates of each tick.
+        updating: (E,) int32, the cell of each update, tick by tick.
         reads: (E, 5) int32, the rows it perceives of a table of messages: own 0..N-1, as neighbours have
-            heard them N..2N-1, 2N for nobody's, or for a message that is lost.
-        arrives: (T, N) bool, at the end of the round the neighbours hear the cell's message of then.
-        starts: (B,) int64, the first cell of each of B samples, which know nothing of each other.
+            received them N..2N-1, 2N for an absent neighbour, or for a message that is lost.
+        arrives: (T, N) bool, at the end of the tick the neighbours receive the cell's message of that moment.
+        starts: (B,) int64, the first cell of each of B independent samples.
     """
 
     counts: NDArray[np.int64]
-    who: NDArray[np.int32]
+    updating: NDArray[np.int32]
     reads: NDArray[np.int32]
     arrives: Flags
     starts: NDArray[np.int64]
 
-    def parts(self, wanted: int) -> "Iterator[tuple[slice, Schedule]]":
-        """The schedules of some samples each, and which cells they are: `wanted` parts of about one size."""
-        rounds, cells = self.arrives.shape
-        when = np.repeat(np.arange(rounds), self.counts)
+    def parts(self, wanted: int) -> "Iterator[tuple[slice, UpdateSchedule]]":
+        """Splits the samples into `wanted` parts of about one size: the cells and the schedule of each."""
+        ticks, cells = self.arrives.shape
+        when = np.repeat(np.arange(ticks), self.counts)
         places = np.append(self.starts, cells)
         ends = [places[np.searchsorted(places, cells * part // wanted)] for part in range(1, wanted)]
         for first, last in pairwise((0, *ends, cells)):
-            mine = (self.who >= first) & (self.who < last)
+            mine = (self.updating >= first) & (self.updating < last)
             reads = self.reads[mine]
-            heard, nobody = reads >= cells, reads == 2 * cells
-            reads -= np.where(heard, cells + first - (last - first), first).astype(np.int32)
-            reads[nobody] = 2 * (last - first)
+            received, absent = reads >= cells, reads == 2 * cells
+            reads -= np.where(received, cells + first - (last - first), first).astype(np.int32)
+            reads[absent] = 2 * (last - first)
             yield (
                 slice(first, last),
-                Schedule(
-                    np.bincount(when[mine], minlength=rounds),
-                    self.who[mine] - np.int32(first),
+                UpdateSchedule(
+                    np.bincount(when[mine], minlength=ticks),
+                    self.updating[mine] - np.int32(first),
                     reads,
                     self.arrives[:, first:last],
                     self.starts[(self.starts >= first) & (self.starts < last)] - first,
@@ -63,103 +64,105 @@ class Schedule:
             )
 
     def by_cell(self) -> tuple[Flags, Flags, NDArray[np.int64]]:
-        """(T, N) who fires, (T, N) who arrives, (T, N, 4) int64 whom each cell reads, N for nobody."""
-        rounds, cells = self.arrives.shape
-        when = np.repeat(np.arange(rounds), self.counts)
-        fires = np.zeros((rounds, cells), np.bool_)
-        fires[when, self.who] = True
-        neighbours = np.full((rounds, cells, 4), cells, np.int64)
-        neighbours[when, self.who] = self.reads[:, 1:] - cells
+        """(T, N) cells that fire, (T, N) arrivals, (T, N, 4) int64 cells that each cell reads, N for none."""
+        ticks, cells = self.arrives.shape
+        when = np.repeat(np.arange(ticks), self.counts)
+        fires = np.zeros((ticks, cells), np.bool_)
+        fires[when, self.updating] = True
+        neighbours = np.full((ticks, cells, 4), cells, np.int64)
+        neighbours[when, self.updating] = self.reads[:, 1:] - cells
         return fires, self.arrives, neighbours
 
 
 @dataclass(frozen=True)
 class Circumstances:
-    """What B samples of N cells live through.
+    """What happens to B samples of N cells during a rollout.
 
     Attributes:
-        late: (B,) whose tiles are switched on at any time within their life.
+        staggered: (B,) samples whose tiles are switched on at any time within the rollout.
         away: (N,) tiles that are off all the time.
-        calm: (B,) samples that lose no message.
-        fresh: (N,) tiles in the seed state, from which nobody has heard yet.
+        lossless: (B,) samples that lose no message.
+        fresh: (N,) tiles in the seed state, which have sent nothing yet.
     """
 
-    late: Flags
+    staggered: Flags
     away: Flags
-    calm: Flags
+    lossless: Flags
     fresh: Flags
 
 
 def draw_schedule(
     recipe: Recipe,
     batch: Batch,
-    lives: NDArray[np.int64],
+    lengths: NDArray[np.int64],
     random: np.random.Generator,
     given: Circumstances,
-) -> Schedule:
+) -> UpdateSchedule:
     """Draws one schedule for a batch: each sample on clocks or not, lossy or not, at its own rates.
 
     Args:
-        recipe: how.
+        recipe: the shares and rates.
         batch: B drawings of N cells in all.
-        lives: (B,) rounds that each sample lives; T is the longest.
+        lengths: (B,) ticks of each sample's rollout; T is the longest.
         random: the only source of chance.
-        given: what else the samples live through.
+        given: what else happens to the samples.
     """
-    samples, cells, rounds = len(batch.starts), len(batch.sample), int(lives.max())
-    life = lives[batch.sample]
+    samples, cells, ticks = len(batch.starts), len(batch.sample), int(lengths.max())
+    length = lengths[batch.sample]
 
     def share(most: float, affected: float) -> NDArray[np.float64]:
-        """(B,) of its messages that each sample loses; nothing in those that are calm."""
-        return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.calm
+        """(B,) share of its messages that each sample loses; 0 in lossless samples."""
+        return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.lossless
 
-    now = np.arange(rounds)[:, None]
+    now = np.arange(ticks)[:, None]
     rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
-    fires = random.random((rounds, cells), dtype=np.float32) < rate.astype(np.float32)
-    arrives = np.ones((rounds, cells), dtype=np.bool_)
-    strict = np.zeros(cells, np.bool_)  # whoever has sent nothing that arrived is nobody
+    fires = random.random((ticks, cells), dtype=np.float32) < rate.astype(np.float32)
+    arrives = np.ones((ticks, cells), dtype=np.bool_)
+    strict = np.zeros(cells, np.bool_)  # a cell none of whose messages has arrived is absent
     if recipe.clocks > 0:
         strict = (random.random(samples) < recipe.clocks)[batch.sample]
         on_clock = np.flatnonzero(strict)
-        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, rounds, random)
-    if recipe.unheard > 0:
-        unheard = share(recipe.max_unheard, recipe.unheard)
-        strict |= unheard[batch.sample] > 0
-        some = np.flatnonzero(unheard[batch.sample])
-        arrives[:, some] &= (
-            random.random((rounds, len(some)), dtype=np.float32) >= unheard[batch.sample[some]]
-        )
-    boot = np.where(given.away, life, random.integers(0, life) * given.late[batch.sample])
-    fires &= (now < life) & (now >= boot)
-    when, who = np.nonzero(fires)
-    neighbours = batch.neighbours[who]
-    known = np.where(given.fresh & strict, _first_heard(fires, arrives), boot)
+        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, ticks, random)
+    if recipe.stale > 0:
+        stale = share(recipe.max_stale, recipe.stale)
+        strict |= stale[batch.sample] > 0
+        some = np.flatnonzero(stale[batch.sample])
+        arrives[:, some] &= random.random((ticks, len(some)), dtype=np.float32) >= stale[batch.sample[some]]
+    boot = np.where(given.away, length, random.integers(0, length) * given.staggered[batch.sample])
+    fires &= (now < length) & (now >= boot)
+    when, updating = np.nonzero(fires)
+    neighbours = batch.neighbours[updating]
+    known = np.where(given.fresh & strict, _first_received(fires, arrives), boot)
     if known.any():
         neighbours[np.append(known, 0)[neighbours] > when[:, None]] = cells
     if recipe.lossy > 0:
         loss = share(recipe.max_loss, recipe.lossy)
         lasts = random.integers(1, recipe.longest_loss + 1, samples)
-        fate = random.random((rounds, cells, 4), dtype=np.float32)[when // lasts[batch.sample][who], who]
-        neighbours[fate < loss[batch.sample][who, None]] = cells
-    reads = np.concatenate((who[:, None], neighbours + cells), axis=1).astype(np.int32)
-    return Schedule(np.bincount(when, minlength=rounds), who.astype(np.int32), reads, arrives, batch.starts)
+        fate = random.random((ticks, cells, 4), dtype=np.float32)[
+            when // lasts[batch.sample][updating], updating
+        ]
+        neighbours[fate < loss[batch.sample][updating, None]] = cells
+    reads = np.concatenate((updating[:, None], neighbours + cells), axis=1).astype(np.int32)
+    return UpdateSchedule(
+        np.bincount(when, minlength=ticks), updating.astype(np.int32), reads, arrives, batch.starts
+    )
 
 
-def _first_heard(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
-    """(N,) the first round in which neighbours know of a cell; T where they never do."""
+def _first_received(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
+    """(N,) the first tick in which neighbours have a message of a cell; T where they never have one."""
     sent = np.logical_or.accumulate(fires, axis=0)
-    heard = sent & arrives
-    return np.where(heard.any(axis=0), heard.argmax(axis=0) + 1, len(heard))
+    received = sent & arrives
+    return np.where(received.any(axis=0), received.argmax(axis=0) + 1, len(received))
 
 
 def _clocks(
-    recipe: Recipe, batch: Batch, who: NDArray[np.int64], rounds: int, random: np.random.Generator
+    recipe: Recipe, batch: Batch, updating: NDArray[np.int64], ticks: int, random: np.random.Generator
 ) -> tuple[Flags, Flags]:
-    """(T, cells in `who`) when those cells tick, and when what they then sent is heard."""
-    period = random.uniform(*recipe.rounds_per_period, len(batch.starts))[batch.sample[who]]
-    period = period * (1 + random.uniform(-recipe.drift, recipe.drift, len(who)))
-    phase = random.random(len(who))
-    latency = random.uniform(*recipe.latency, len(who))
-    # A tile has ticked in a round when the count of its periods grew in it.
-    periods = np.arange(rounds + 1)[:, None] / period + phase
+    """(T, cells in `updating`) when those cells update, and when their message of that moment arrives."""
+    period = random.uniform(*recipe.ticks_per_period, len(batch.starts))[batch.sample[updating]]
+    period = period * (1 + random.uniform(-recipe.drift, recipe.drift, len(updating)))
+    phase = random.random(len(updating))
+    latency = random.uniform(*recipe.latency, len(updating))
+    # A tile updates in the ticks in which the count of its periods grows.
+    periods = np.arange(ticks + 1)[:, None] / period + phase
     return np.diff(np.floor(periods), axis=0) > 0, np.diff(np.floor(periods - latency), axis=0) > 0

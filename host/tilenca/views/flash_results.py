@@ -13,7 +13,7 @@ HEADER = ("PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY")
 
 
 @dataclass
-class Row:
+class FlashRow:
     """What became of one tile: `board` is what `tiles.toml` calls it, `firmware_id` what it says it runs."""
 
     port: str | None
@@ -43,7 +43,7 @@ class Row:
         return [self.port or "-", tile, self.result, seconds, self.firmware_id or "-", self.error or ""]
 
 
-def tell(rows: Sequence[Row], as_json: bool) -> None:
+def tell(rows: Sequence[FlashRow], as_json: bool) -> None:
     """Prints what became of them, and how many were flashed."""
     if as_json:
         print(json.dumps({"tiles": [vars(row) for row in rows]}, indent=2))
