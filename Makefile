@@ -41,7 +41,7 @@ demo: setup-demo ## build the firmware and let emulated tiles name the ten digit
 test: setup-test ## run every test: the firmware's core on this machine, then host and emulator
 	@$(PIO) run -s -e $(ENV)
 	@$(PIO) test -e native
-	@$(PYTHON) -m pytest
+	@$(PYTHON) -m pytest -n auto --dist worksteal
 
 check: static test ## what to run before every commit: format, lint, imports, types, budgets, tests
 
@@ -85,5 +85,5 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/emulator build/simulator build/training build/strict build/models
+	@rm -rf .pio build/emulator build/simulator build/training build/strict build/test build/models
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -1,6 +1,6 @@
 """The four sides, in the order of the wire."""
 
-from tilenca.base.sides import EAST, NORTH, SIDES, SOUTH, STEPS, WEST, opposite
+from tilenca.base.sides import EAST, NORTH, SIDES, SOUTH, OFFSETS, WEST, opposite
 
 
 def test_letters_and_numbers_have_the_same_order() -> None:
@@ -8,11 +8,11 @@ def test_letters_and_numbers_have_the_same_order() -> None:
 
 
 def test_opposite_sides_touch() -> None:
-    for side, (down, right) in enumerate(STEPS):
-        assert STEPS[opposite(side)] == (-down, -right)
+    for side, (down, right) in enumerate(OFFSETS):
+        assert OFFSETS[opposite(side)] == (-down, -right)
         assert opposite(opposite(side)) == side
     assert (opposite(NORTH), opposite(EAST)) == (SOUTH, WEST)
 
 
 def test_rows_grow_to_the_south_and_columns_to_the_east() -> None:
-    assert (STEPS[SOUTH], STEPS[EAST]) == ((1, 0), (0, 1))
+    assert (OFFSETS[SOUTH], STEPS[EAST]) == ((1, 0), (0, 1))

@@ -7,16 +7,16 @@ import pytest
 
 from support.scripted_port import HELLO
 from tilenca.fleet.identify import Answer
-from tilenca.views.flash_results import Row, tell
+from tilenca.views.flash_results import FlashRow, tell
 
 
-def rows() -> list[Row]:
-    flashed = Row("/dev/ttyACM0", seconds=4.25, tile=3, board="serial:1", attempts=1)
+def rows() -> list[FlashRow]:
+    flashed = FlashRow("/dev/ttyACM0", seconds=4.25, tile=3, board="serial:1", attempts=1)
     flashed.end("flashed")
-    skipped = Row("/dev/ttyACM1")
+    skipped = FlashRow("/dev/ttyACM1")
     skipped.end("skipped")
     skipped.hear(Answer(HELLO))
-    failed = Row("/dev/ttyACM2", attempts=2, seconds=11.0)
+    failed = FlashRow("/dev/ttyACM2", attempts=2, seconds=11.0)
     failed.end("failed", "no reply; is it a tile?")
     return [flashed, skipped, failed]
 
@@ -53,14 +53,14 @@ def test_without_boards_the_document_is_empty_and_nothing_else_is_said(
 
 
 def test_a_board_that_is_never_reached_was_interrupted() -> None:
-    assert Row("/dev/ttyACM0").cells[2:] == ["interrupted", "-", "-", "interrupted; flash it again"]
+    assert FlashRow("/dev/ttyACM0").cells[2:] == ["interrupted", "-", "-", "interrupted; flash it again"]
 
 
 def test_the_file_of_tiles_counts_more_than_what_a_tile_calls_itself() -> None:
-    row = Row("/dev/ttyACM0", tile=3)
+    row = FlashRow("/dev/ttyACM0", tile=3)
     row.hear(Answer(HELLO))
     assert (row.tile, row.firmware_id) == (3, "ABCDEF01")
-    unnamed = Row("/dev/ttyACM0")
+    unnamed = FlashRow("/dev/ttyACM0")
     unnamed.hear(Answer(replace(HELLO, tile=0)))
     assert unnamed.tile is None
     unnamed.hear(Answer(problem="says nothing"))
