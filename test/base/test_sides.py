@@ -1,6 +1,6 @@
 """The four sides, in the order of the wire."""
 
-from tilenca.base.sides import EAST, NORTH, SIDES, SOUTH, OFFSETS, WEST, opposite
+from tilenca.base.sides import EAST, NORTH, OFFSETS, SIDES, SOUTH, WEST, opposite
 
 
 def test_letters_and_numbers_have_the_same_order() -> None:
@@ -15,4 +15,4 @@ def test_opposite_sides_touch() -> None:
 
 
 def test_rows_grow_to_the_south_and_columns_to_the_east() -> None:
-    assert (OFFSETS[SOUTH], STEPS[EAST]) == ((1, 0), (0, 1))
+    assert (OFFSETS[SOUTH], OFFSETS[EAST]) == ((1, 0), (0, 1))
