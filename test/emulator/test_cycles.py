@@ -7,7 +7,7 @@ import pytest
 from firmware import cost_fit
 from tilenca.base import paths
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import cables
+from tilenca.emulator.wiring import cables
 from tilenca.model import cost
 from tilenca.model.file import Dimensions, load_model
 from tilenca.protocol.line_reader import LineReader

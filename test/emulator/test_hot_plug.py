@@ -12,7 +12,7 @@ import pytest
 from tilenca.base import paths
 from tilenca.base.sides import OFFSETS
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import cables
+from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.sentences import LinkSentence, TileSentence
 from tilenca.protocol.settings import settings_block

@@ -9,8 +9,9 @@ from types import TracebackType
 from typing import Self
 
 from support.owned_clock import OwnedClock
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings, port_name
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
+from tilenca.emulator.types import port_name
 from tilenca.shapes.file import load_task
 
 LIMIT_S = 600
@@ -34,7 +35,7 @@ class Lab:
         conditions = EmulationSettings(seconds=None, bootloader=STOCK_BOOTLOADER, boot_spread_s=0.0)
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
-        self._emulation = Emulation(task, task.shapes[0], elf, conditions, firmware_settings(elf))
+        self._emulation = Emulation(task.shapes[0], task.labels, elf, conditions, firmware_settings(elf))
         self._clock = OwnedClock(folder / "clock")
         self.environment = self._clock.environment  # for the commands that use the lab
         self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader

@@ -31,9 +31,8 @@ def emulation(elf: Path, seconds: float) -> list[str]:
         TilencaError: the image cannot be emulated.
     """
     task = load_task(paths.DEFAULT_SHAPES)
-    running = Emulation(
-        task, task.find(SHAPE), elf, EmulationSettings(seconds=seconds, seed=SEED), firmware_settings(elf)
-    )
+    settings = EmulationSettings(seconds=seconds, seed=SEED)
+    running = Emulation(task.find(SHAPE), task.labels, elf, settings, firmware_settings(elf))
     with running.array:
         started_s = time.perf_counter()
         running.run(lambda *_: None)

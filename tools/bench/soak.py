@@ -11,7 +11,7 @@ from pathlib import Path
 from firmware import cost_fit
 from tilenca.base.sides import NORTH, SIDES, SOUTH
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import cables
+from tilenca.emulator.wiring import cables
 from tilenca.model.file import Dimensions, Model
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.sentences import HelloSentence, LinkSentence, Sentence

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from firmware.synthetic_models import network
 from tilenca.base import paths
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import cables
+from tilenca.emulator.wiring import cables
 from tilenca.model import cost, render
 from tilenca.model.file import Dimensions, Model
 from tilenca.protocol.settings import settings_block

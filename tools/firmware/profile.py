@@ -15,7 +15,7 @@ from firmware import cost_fit
 from tilenca.base import paths
 from tilenca.base.sides import SIDES
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import cables
+from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.sentences import TimeSentence
 from tilenca.protocol.settings import settings_block

@@ -1,63 +1,33 @@
 """`tilenca emulate`: the firmware image on one emulated board per tile, wired as on the real board."""
 
 import argparse
-import json
-import os
 import stat
-import threading
-import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
-
-from rich.console import Console
-from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError, image_error
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, number, seed, size, whole
-from tilenca.emulator.debug import attend, debuggers, frames, waveforms
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings, save_eeprom
+from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.faults import parse as parse_fault
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
-from tilenca.fleet.recording import Recorder, as_record
+from tilenca.fleet.recording import Recorder
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
-from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.file import Shape, Task, load_task
 from tilenca.shapes.sizes import Size, size_name
-from tilenca.views.emulated import mismatch, take_picture, verdict
-from tilenca.views.progress import Tell, show_progress
-from tilenca.views.tiles import Picture, beside
 
 ALL = "all"
-WORKERS = 2
 MAX_TILES = 255  # a tile's number is one byte
-PLAIN_WIDTH = 80
 DEFAULT_UPDATES = 30
 NO_BOOTLOADER = "none"
 # A UART that is off by a twentieth understands nothing; twice that is far enough to see it.
 MAX_PPM = 100_000.0
 MAX_BOOT_SPREAD_S = 3600.0
-SETTLING_S = 0.001
 MAX_SECONDS = 86_400.0
 MAX_THREADS = 64
-
-# Lays out one shape in tiles.
-LayOut = Callable[[Shape], Emulation]
-
-
-@dataclass(frozen=True)
-class EmulationResult:
-    """A shape that has run to its end; `notes` are for stderr, once each."""
-
-    report: dict[str, Any]
-    picture: Picture
-    verdict: str
-    notes: tuple[str, ...]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -178,24 +148,23 @@ def run(args: argparse.Namespace) -> int:
     )
 
     def lay_out(shape: Shape) -> Emulation:
-        return Emulation(task, shape, args.elf, settings, defaults)
+        return Emulation(shape, task.labels, args.elf, settings, defaults)
 
     if args.serve is not None:
         emulation = lay_out(shapes[0])
-        with emulation.array, _closely(emulation, args) as on_slice:
+        with emulation.array, observe(emulation, args) as on_slice:
             serve(emulation, args.serve, args.seconds, not args.keep_running, on_slice)
         return 0
     with ExitStack() as stack:
         record = stack.enter_context(Recorder(args.record, "w")) if args.record else None
         if args.watch:
-            outcomes = [_watch(args, lay_out, shape, record) for shape in shapes]
+            results = [watch(args, task, lay_out, shape, record) for shape in shapes]
         else:
-            with show_progress() as tell:
-                outcomes = _run_all(args, lay_out, shapes, record, tell)
-    _print(args, outcomes)
-    for note in sorted({note for outcome in outcomes for note in outcome.notes}):
+            results = run_all(args, task, lay_out, shapes, record)
+    print_results(args, results)
+    for note in sorted({note for result in results for note in result.notes}):
         warn(f"tilenca: {note}")
-    return 0 if all(outcome.report["all_right"] for outcome in outcomes) else 1
+    return 0 if all(result.report["all_right"] for result in results) else 1
 
 
 def _check_combinations(args: argparse.Namespace) -> None:
@@ -247,157 +216,3 @@ def _chosen(task: Task, names: Sequence[str], wanted: Size | None) -> list[Shape
                 f"{task.path}: shape '{shape.name}' has {len(shape.cells)} tiles; at most {MAX_TILES}"
             )
     return chosen
-
-
-def _record_line(shape: Shape, heard: Heard) -> str:
-    tile = int(heard.port.rpartition("-")[2])
-    return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
-
-
-def _outcome(emulation: Emulation, started: float) -> EmulationResult:
-    notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
-    if remedy := mismatch(emulation):
-        notes.append(remedy)
-    report = emulation.report(time.monotonic() - started)
-    return EmulationResult(report, take_picture(emulation), verdict(emulation), tuple(notes))
-
-
-@contextmanager
-def _closely(
-    emulation: Emulation, args: argparse.Namespace, stopped: Callable[[], bool] = lambda: False
-) -> Iterator[Callable[[], None]]:
-    """What is looked at besides the tiles' faces; the function is to be called after every slice of time.
-
-    Args:
-        emulation: the tiles.
-        args: the command line.
-        stopped: whether the run has been interrupted, for who waits outside the main thread.
-    """
-    with (
-        _kept_eeprom(emulation, args.eeprom),
-        waveforms(emulation, args.vcd, args.pin) as waves,
-        frames(emulation, args.frames) as log,
-        debuggers(emulation, args.gdb, stopped) as ports,
-    ):
-
-        def on_slice() -> None:
-            if waves is not None:
-                waves.collect()
-            if log is not None:
-                log.collect()
-            attend(ports, stopped)
-
-        on_slice()
-        yield on_slice
-
-
-@contextmanager
-def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]:
-    try:
-        yield
-    finally:
-        if directory is not None:
-            for tile in emulation.array:
-                save_eeprom(tile, directory)
-
-
-def _run_all(
-    args: argparse.Namespace, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None, tell: Tell
-) -> list[EmulationResult]:
-    """Runs shapes side by side, since they know nothing of each other; results come in their order."""
-    stopped = threading.Event()
-
-    def one(shape: Shape) -> tuple[EmulationResult, list[str]]:
-        started = time.monotonic()
-        kept: list[str] = []
-
-        def keep(heard: list[Heard], on_slice: Callable[[], None], running: Emulation) -> None:
-            tell(shape.name, running.share_done(), f"{running.array.time_s:.2f} s emulated")
-            if stopped.is_set():
-                raise KeyboardInterrupt
-            on_slice()
-            if record is not None:
-                kept.extend(_record_line(shape, line) for line in heard)
-
-        tell(shape.name, 0.0, "laying out")
-        emulation = lay_out(shape)
-        with emulation.array, _closely(emulation, args, stopped.is_set) as on_slice:
-            emulation.run(lambda _, heard: keep(heard, on_slice, emulation))
-            return _outcome(emulation, started), kept
-
-    outcomes = []
-    with ThreadPoolExecutor(min(WORKERS, os.cpu_count() or 1)) as pool:
-        try:
-            for shape, (outcome, kept) in zip(shapes, pool.map(one, shapes), strict=True):
-                outcomes.append(outcome)
-                emulated_s, wall_s = outcome.report["simulated_s"], outcome.report["wall_s"]
-                speed = emulated_s / max(wall_s, 0.001)
-                warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
-                if record is not None:
-                    record.write(kept)
-        except BaseException:
-            stopped.set()
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return outcomes
-
-
-def _watch(
-    args: argparse.Namespace, lay_out: LayOut, shape: Shape, record: Recorder | None
-) -> EmulationResult:
-    """Runs one shape in step with the wall clock, or slower, and shows it."""
-    console = Console()
-    started = time.monotonic()
-    emulation = lay_out(shape)
-    told = [0] * len(emulation.array)
-    with emulation.array, _closely(emulation, args) as on_slice, ExitStack() as stack:
-        live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
-
-        def show(running: Emulation, heard: list[Heard]) -> None:
-            on_slice()
-            if record is not None:
-                record.write(_record_line(shape, line) for line in heard)
-            if live is not None:
-                picture = beside([take_picture(running)], console, console.width, console.height)
-                live.update(picture, refresh=True)
-                time.sleep(max(0.0, started + running.array.time_s - time.monotonic()))
-            else:
-                _tell_changes(running, told)
-
-        emulation.run(show)
-        return _outcome(emulation, started)
-
-
-def _tell_changes(emulation: Emulation, told: list[int]) -> None:
-    """One plain line for every change of a display, for what is not a terminal."""
-    news = []
-    for tile in emulation.array:
-        changes = tile.display_changes[told[tile.index] :]
-        told[tile.index] += len(changes)
-        # A tile sets its segments one by one: of what it shows within a millisecond only the last counts.
-        for following, change in enumerate(changes, start=1):
-            if following == len(changes) or changes[following].time_s - change.time_s > SETTLING_S:
-                news.append((change.time_s, tile.index, change.segments))
-    for time_s, index, segments in sorted(news):
-        shown = emulation.label(segments) or "nothing"
-        print(f"{time_s:8.3f} s  {emulation.shape.name}: tile {index + 1} shows {shown}")
-
-
-def _print(args: argparse.Namespace, outcomes: Sequence[EmulationResult]) -> None:
-    all_right = all(outcome.report["all_right"] for outcome in outcomes)
-    if args.json:
-        reports = [outcome.report for outcome in outcomes]
-        print(json.dumps(reports[0] if len(reports) == 1 else {"runs": reports, "all_right": all_right}))
-        return
-    console = Console(highlight=False)
-    if not (args.watch and console.is_terminal):  # there the last picture still stands
-        width = console.width if console.is_terminal else PLAIN_WIDTH
-        console.print(beside([outcome.picture for outcome in outcomes], console, width), soft_wrap=True)
-    for outcome in outcomes:
-        console.print(outcome.verdict, soft_wrap=True, markup=False)
-    right = sum(outcome.report["all_right"] for outcome in outcomes)
-    emulated_s = sum(outcome.report["simulated_s"] for outcome in outcomes)
-    tiles = sum(len(outcome.report["tiles"]) for outcome in outcomes)
-    console.print(
-        f"{right} of {len(outcomes)} shapes right; {tiles} tiles, {emulated_s:.1f} s emulated", soft_wrap=True
-    )

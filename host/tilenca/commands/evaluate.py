@@ -3,6 +3,7 @@
 import argparse
 import json
 import math
+import threading
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -13,14 +14,17 @@ from numpy.typing import NDArray
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.commands.arguments import count, seed, share, size
+from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.metrics import CONVERGED_BY, convergence_times, validate
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
+from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
-from tilenca.shapes.file import load_task
 from tilenca.shapes.sizes import Size, size_name
 from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.views.progress import show_progress
 from tilenca.views.table import table
 
 # Options that --suite does not take, and their defaults.
@@ -197,37 +201,45 @@ def _engine(name: str, model: Model) -> Engine:
 def _emulate(
     args: argparse.Namespace, model: Model, drawings: Drawings, chosen: NDArray[np.int64]
 ) -> RunResults:
-    from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
-
+    """Runs the firmware image, one emulation for each entry of `chosen`."""
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
-    if not paths.FIRMWARE_ELF.exists():
-        raise BuildError(f"{paths.FIRMWARE_ELF}: no firmware image; run `make demo` or `pio run`")
-    tasks = [load_task(path) for path in args.shapes]
-    defaults = firmware_settings(paths.FIRMWARE_ELF)
-    right, converged_at = [], []
-    for run, number in enumerate(chosen):
-        shape = drawings.shapes[number]
-        settings = EmulationSettings(updates=args.steps, seed=args.seed * 1000 + run)
-        emulation = Emulation(tasks[drawings.groups[number]], shape, paths.FIRMWARE_ELF, settings, defaults)
+    elf = paths.FIRMWARE_ELF
+    if not elf.exists():
+        raise BuildError(f"{elf}: no firmware image; run `make demo` or `pio run`")
+    defaults = firmware_settings(elf)
 
-        def check(running: Emulation, _: list[Any]) -> None:
-            if running.hello is not None and running.hello.model_id != model.model_id:
-                raise BuildError(
-                    f"{paths.FIRMWARE_ELF}: carries model {running.hello.model_id:04X}, not "
-                    f"{model.model_id:04X}; run: tilenca export --model {args.model} && pio run"
-                )
+    def run(number: int, stopped: threading.Event) -> tuple[float, float]:
+        shape = drawings.shapes[chosen[number]]
+        settings = EmulationSettings(updates=args.steps, seed=args.seed * 1000 + number)
+        emulation = Emulation(shape, model.labels, elf, settings, defaults)
+
+        def look(running: Emulation, _: list[Heard]) -> None:
+            tell(f"{shape.name}, run {number + 1}", running.share_done(), f"of {len(chosen)}")
+            if stopped.is_set():
+                raise KeyboardInterrupt
+            _check_model(running, model, args.model)
 
         with emulation.array:
-            emulation.run(check)
-            right.append(
-                sum(emulation.shown(tile) == shape.label for tile in emulation.array) / len(shape.cells)
-            )
+            emulation.run(look)
             updates = emulation.agreed_at_update()
-        converged_at.append(math.inf if updates is None else max(updates, 1))
-    return RunResults(
-        chosen, np.array(right, np.float32), np.array(converged_at), np.zeros(len(chosen), np.bool_)
-    )
+            return emulation.share_right(), math.inf if updates is None else max(updates, 1)
+
+    with show_progress() as tell:
+        results = [result for _, result in run_side_by_side(run, range(len(chosen)))]
+    right, converged_at = zip(*results, strict=True)
+    no_regression = np.zeros(len(chosen), np.bool_)
+    return RunResults(chosen, np.array(right, np.float32), np.array(converged_at), no_regression)
+
+
+def _check_model(emulation: Emulation, model: Model, directory: Path) -> None:
+    """Refuses to measure an image that carries another model."""
+    hello = emulation.hello
+    if hello is not None and hello.model_id != model.model_id:
+        raise BuildError(
+            f"{paths.FIRMWARE_ELF}: carries model {hello.model_id:04X}, not {model.model_id:04X}; "
+            f"run: tilenca export --model {directory} && pio run"
+        )
 
 
 def _report(

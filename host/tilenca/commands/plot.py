@@ -11,7 +11,7 @@ from tilenca.base.errors import UsageError
 from tilenca.commands.arguments import seed, whole
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
-from tilenca.shapes.file import load_task
+from tilenca.shapes.file import find_shape
 from tilenca.simulator.simulator import ScheduleKind
 
 HISTORY_FILE = "history.csv"
@@ -123,7 +123,7 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
     model = load_model(args.model)
     shapes = args.shapes or paths.DEFAULT_SHAPES
     drawings = load_drawings([shapes], labels=model.labels)
-    number = drawings.shapes.index(load_task(shapes).find(args.shape))
+    number = find_shape(drawings.shapes, args.shape, shapes)
     schedule: ScheduleKind = args.schedule or "clock"
     chance = 1 if args.seed is None else args.seed
     film = record(model, drawings, number, args.steps or FILM_STEPS, schedule, chance)

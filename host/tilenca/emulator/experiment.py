@@ -4,20 +4,22 @@
 """
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tilenca.base.errors import TilencaError, UsageError, image_error
-from tilenca.base.sides import EAST, SOUTH, opposite
-from tilenca.emulator.array import Array, Link
+from tilenca.base.errors import TilencaError, image_error
+from tilenca.emulator.array import Array
+from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.faults import Faults, FaultSpec
-from tilenca.emulator.tile import EEPROM_BYTES, EmulatedTile
+from tilenca.emulator.tile import EmulatedTile
+from tilenca.emulator.types import port_name
+from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
 from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
 from tilenca.protocol.settings import Settings, settings_block
-from tilenca.shapes.file import Shape, Task
+from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import label_of_glyph
 
 SLICE_S = 0.05
@@ -28,7 +30,6 @@ PATIENCE = 1.5
 PATIENCE_S = 3.0
 # The sentence that tells of an update follows the display by less than this, and the next update later.
 TELLING_MS = 5.0
-EEPROM_SUFFIX = ".eeprom"
 FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
@@ -91,28 +92,22 @@ def firmware_settings(elf: Path) -> Settings | None:
     return None
 
 
-def cables(shape: Shape) -> list[Link]:
-    """One link for every pair of neighbouring tiles, numbered in reading order."""
-    neighbours = shape.neighbours()
-    return [
-        (tile, side, neighbours[tile][side], opposite(side))
-        for tile in range(len(neighbours))
-        for side in (EAST, SOUTH)  # each cable once, from its western or northern tile
-        if neighbours[tile][side] >= 0
-    ]
-
-
 class Emulation:
     """The tiles of one shape, running."""
 
     def __init__(
-        self, task: Task, shape: Shape, elf: Path, settings: EmulationSettings, defaults: Settings | None
+        self,
+        shape: Shape,
+        labels: Sequence[str],
+        elf: Path,
+        settings: EmulationSettings,
+        defaults: Settings | None,
     ) -> None:
         """Wires the tiles and writes their settings; nothing runs yet.
 
         Args:
-            task: the file the shape is of; its labels tell "5" from "S".
             shape: what to lay out.
+            labels: those of all classes; they tell "5" from "S".
             elf: the firmware image.
             settings: how to switch it on.
             defaults: what `firmware_settings` said; with None tiles get no settings and no number.
@@ -121,7 +116,7 @@ class Emulation:
             BuildError, UsageError: the image cannot be used, or the emulator is not built.
             UsageError: a fault is of a tile or cable that there is not, or an EEPROM file cannot be used.
         """
-        self.task, self.shape, self.settings = task, shape, settings
+        self.shape, self.labels, self.settings = shape, tuple(labels), settings
         count = len(shape.cells)
         draw = random.Random(f"{settings.seed} {shape.name}")
         self.ppm = [draw.uniform(-settings.ppm, settings.ppm) for _ in range(count)]
@@ -223,11 +218,15 @@ class Emulation:
 
     def label(self, segments: int) -> str:
         """The character that lit segments show; "" for a dark display, "?" for none."""
-        return label_of_glyph(segments, self.task.labels)
+        return label_of_glyph(segments, self.labels)
 
     def shown(self, tile: EmulatedTile) -> str:
         """The character a tile's display shows now."""
         return self.label(tile.segments)
+
+    def share_right(self) -> float:
+        """Share of all tiles (0..1) whose display shows the shape's label now."""
+        return sum(self.shown(tile) == self.shape.label for tile in self.array) / len(self.array)
 
     @property
     def all_right(self) -> bool:
@@ -295,47 +294,3 @@ class Emulation:
             "updates": self._updates(tile.index),
             "frames": {counter: sum(getattr(link, counter) for link in links) for counter in FRAME_COUNTERS},
         }
-
-
-def load_eeprom(tile: EmulatedTile, directory: Path) -> bool:
-    """Puts a tile's file into its EEPROM; False if it has none.
-
-    Raises:
-        UsageError: the file cannot be read, or is not as long as the EEPROM.
-    """
-    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
-    try:
-        contents = path.read_bytes()
-    except FileNotFoundError:
-        return False
-    except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}; give --eeprom a directory of such files") from error
-    if len(contents) != EEPROM_BYTES:
-        raise UsageError(
-            f"{path}: {len(contents)} bytes, an EEPROM has {EEPROM_BYTES}; delete it to begin anew"
-        )
-    tile.write_eeprom(0, contents)
-    return True
-
-
-def save_eeprom(tile: EmulatedTile, directory: Path) -> None:
-    """Writes a tile's EEPROM to its file; all of it or nothing.
-
-    Raises:
-        UsageError: the directory cannot be written.
-    """
-    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        fresh = path.with_suffix(".new")
-        fresh.write_bytes(tile.read_eeprom())
-        fresh.replace(path)
-    except OSError as error:
-        raise UsageError(
-            f"{path}: {error.strerror}; give --eeprom a directory that can be written"
-        ) from error
-
-
-def port_name(index: int) -> str:
-    """The name of a tile's serial port, numbered from 1 in reading order."""
-    return f"tile-{index + 1:02d}"

@@ -15,9 +15,10 @@ from pathlib import Path
 
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
-from tilenca.emulator.experiment import Emulation, port_name
+from tilenca.emulator.experiment import Emulation
 from tilenca.emulator.lag import Lag, told
 from tilenca.emulator.tile import EmulatedTile
+from tilenca.emulator.types import port_name
 
 STOCK_BOOTLOADER = Path(
     "/usr/share/arduino/hardware/arduino/avr/bootloaders/stk500v2/stk500boot_v2_mega2560.hex"

@@ -59,3 +59,8 @@ class DisplayChange:
 
     time_s: float
     segments: int
+
+
+def port_name(index: int) -> str:
+    """The name of a tile's serial port, numbered from 1 in reading order."""
+    return f"tile-{index + 1:02d}"

@@ -8,7 +8,7 @@ class (`tilenca.shapes.sizes`).
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -81,11 +81,20 @@ class Task:
         Raises:
             UsageError: the file has none; the message lists what it has.
         """
-        for shape in self.shapes:
-            if shape.name == name:
-                return shape
-        names = " ".join(shape.name for shape in self.shapes)
-        raise UsageError(f"{self.path}: no shape '{name}'; it has: {names}")
+        return self.shapes[find_shape(self.shapes, name, self.path)]
+
+
+def find_shape(shapes: Sequence[Shape], name: str, path: Path) -> int:
+    """The index of the shape called `name`.
+
+    Raises:
+        UsageError: there is none; the message names the file and lists what it has.
+    """
+    for number, shape in enumerate(shapes):
+        if shape.name == name:
+            return number
+    names = " ".join(shape.name for shape in shapes)
+    raise UsageError(f"{path}: no shape '{name}'; it has: {names}")
 
 
 def load_task(path: Path, max_classes: int | None = None) -> Task:

@@ -1,7 +1,7 @@
 """What emulated tiles show, and whether that is right."""
 
 from tilenca.emulator.experiment import Emulation
-from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.file import UNKNOWN, Task
 from tilenca.views.tiles import Picture
 
 
@@ -32,9 +32,9 @@ def verdict(emulation: Emulation) -> str:
     return f"{name}: WRONG, {total}: {', '.join(wrong)}"
 
 
-def mismatch(emulation: Emulation) -> str | None:
+def mismatch(emulation: Emulation, task: Task) -> str | None:
     """What to do if wrong tiles run a model of other shapes; None if nothing says that they do."""
-    task, hello = emulation.task, emulation.hello
+    hello = emulation.hello
     foreign = {emulation.shown(tile) for tile in emulation.array} - {"", UNKNOWN, *task.labels}
     classes = len(task.labels), len({*task.labels, UNKNOWN})
     if hello is None or emulation.all_right or (hello.classes in classes and not foreign):

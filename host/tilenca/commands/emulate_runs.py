@@ -1,0 +1,198 @@
+"""What `tilenca emulate` does with the shapes it has laid out: run them, watch them, report."""
+
+import argparse
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.live import Live
+
+from tilenca.base.stdio import warn
+from tilenca.emulator.debug import attend, debuggers, frames, waveforms
+from tilenca.emulator.eeprom_files import save_eeprom
+from tilenca.emulator.experiment import Emulation
+from tilenca.emulator.side_by_side import run_side_by_side
+from tilenca.fleet.recording import Recorder, as_record
+from tilenca.protocol.line_reader import Heard
+from tilenca.shapes.file import Shape, Task
+from tilenca.views.emulated import mismatch, take_picture, verdict
+from tilenca.views.progress import Tell, show_progress
+from tilenca.views.tiles import Picture, beside
+
+PLAIN_WIDTH = 80
+SETTLING_S = 0.001
+
+# Lays out one shape in tiles.
+LayOut = Callable[[Shape], Emulation]
+
+
+@dataclass(frozen=True)
+class EmulationResult:
+    """A shape that has run to its end; `notes` are for stderr, once each."""
+
+    report: dict[str, Any]
+    picture: Picture
+    verdict: str
+    notes: tuple[str, ...]
+
+
+def _record_line(shape: Shape, heard: Heard) -> str:
+    tile = int(heard.port.rpartition("-")[2])
+    return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
+
+
+def _result(emulation: Emulation, task: Task, started: float) -> EmulationResult:
+    notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
+    if remedy := mismatch(emulation, task):
+        notes.append(remedy)
+    report = emulation.report(time.monotonic() - started)
+    return EmulationResult(report, take_picture(emulation), verdict(emulation), tuple(notes))
+
+
+@contextmanager
+def observe(
+    emulation: Emulation, args: argparse.Namespace, stopped: Callable[[], bool] = lambda: False
+) -> Iterator[Callable[[], None]]:
+    """Writes and serves what the options ask for; the caller calls the function after every slice of time.
+
+    Args:
+        emulation: the tiles.
+        args: the command line.
+        stopped: whether the run was interrupted; a thread other than the main one sees no Ctrl-C.
+    """
+    with (
+        _kept_eeprom(emulation, args.eeprom),
+        waveforms(emulation, args.vcd, args.pin) as waves,
+        frames(emulation, args.frames) as log,
+        debuggers(emulation, args.gdb, stopped) as ports,
+    ):
+
+        def on_slice() -> None:
+            if waves is not None:
+                waves.collect()
+            if log is not None:
+                log.collect()
+            attend(ports, stopped)
+
+        on_slice()
+        yield on_slice
+
+
+@contextmanager
+def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        if directory is not None:
+            for tile in emulation.array:
+                save_eeprom(tile, directory)
+
+
+def run_all(
+    args: argparse.Namespace, task: Task, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+) -> list[EmulationResult]:
+    """Runs shapes side by side, as fast as they go; results come in the order of the shapes."""
+    results = []
+    with show_progress() as tell:
+
+        def run(shape: Shape, stopped: threading.Event) -> tuple[EmulationResult, list[str]]:
+            return _run_one(args, task, lay_out, shape, tell, stopped)
+
+        for shape, (result, lines) in run_side_by_side(run, shapes):
+            results.append(result)
+            emulated_s, wall_s = result.report["simulated_s"], result.report["wall_s"]
+            speed = emulated_s / max(wall_s, 0.001)
+            warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
+            if record is not None:
+                record.write(lines)
+    return results
+
+
+def _run_one(
+    args: argparse.Namespace, task: Task, lay_out: LayOut, shape: Shape, tell: Tell, stopped: threading.Event
+) -> tuple[EmulationResult, list[str]]:
+    """Runs one shape to its end; returns the result and the lines to record."""
+    started = time.monotonic()
+    lines: list[str] = []
+    tell(shape.name, 0.0, "laying out")
+    emulation = lay_out(shape)
+    with emulation.array, observe(emulation, args, stopped.is_set) as on_slice:
+
+        def look(running: Emulation, heard: list[Heard]) -> None:
+            tell(shape.name, running.share_done(), f"{running.array.time_s:.2f} s emulated")
+            if stopped.is_set():
+                raise KeyboardInterrupt
+            on_slice()
+            if args.record is not None:
+                lines.extend(_record_line(shape, line) for line in heard)
+
+        emulation.run(look)
+        return _result(emulation, task, started), lines
+
+
+def watch(
+    args: argparse.Namespace, task: Task, lay_out: LayOut, shape: Shape, record: Recorder | None
+) -> EmulationResult:
+    """Runs one shape in step with the wall clock, or slower, and shows it."""
+    console = Console()
+    started = time.monotonic()
+    emulation = lay_out(shape)
+    told = [0] * len(emulation.array)
+    with emulation.array, observe(emulation, args) as on_slice, ExitStack() as stack:
+        live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
+
+        def show(running: Emulation, heard: list[Heard]) -> None:
+            on_slice()
+            if record is not None:
+                record.write(_record_line(shape, line) for line in heard)
+            if live is not None:
+                picture = beside([take_picture(running)], console, console.width, console.height)
+                live.update(picture, refresh=True)
+                time.sleep(max(0.0, started + running.array.time_s - time.monotonic()))
+            else:
+                _tell_changes(running, told)
+
+        emulation.run(show)
+        return _result(emulation, task, started)
+
+
+def _tell_changes(emulation: Emulation, told: list[int]) -> None:
+    """One plain line for every change of a display, for what is not a terminal."""
+    news = []
+    for tile in emulation.array:
+        changes = tile.display_changes[told[tile.index] :]
+        told[tile.index] += len(changes)
+        # A tile sets its segments one by one: of what it shows within a millisecond only the last counts.
+        for following, change in enumerate(changes, start=1):
+            if following == len(changes) or changes[following].time_s - change.time_s > SETTLING_S:
+                news.append((change.time_s, tile.index, change.segments))
+    for time_s, index, segments in sorted(news):
+        shown = emulation.label(segments) or "nothing"
+        print(f"{time_s:8.3f} s  {emulation.shape.name}: tile {index + 1} shows {shown}")
+
+
+def print_results(args: argparse.Namespace, results: Sequence[EmulationResult]) -> None:
+    """Prints pictures, verdicts and a summary, or the JSON document."""
+    all_right = all(result.report["all_right"] for result in results)
+    if args.json:
+        reports = [result.report for result in results]
+        print(json.dumps(reports[0] if len(reports) == 1 else {"runs": reports, "all_right": all_right}))
+        return
+    console = Console(highlight=False)
+    if not (args.watch and console.is_terminal):  # there the last picture still stands
+        width = console.width if console.is_terminal else PLAIN_WIDTH
+        console.print(beside([result.picture for result in results], console, width), soft_wrap=True)
+    for result in results:
+        console.print(result.verdict, soft_wrap=True, markup=False)
+    right = sum(result.report["all_right"] for result in results)
+    emulated_s = sum(result.report["simulated_s"] for result in results)
+    tiles = sum(len(result.report["tiles"]) for result in results)
+    console.print(
+        f"{right} of {len(results)} shapes right; {tiles} tiles, {emulated_s:.1f} s emulated", soft_wrap=True
+    )

@@ -1,0 +1,48 @@
+"""A file for the EEPROM of each emulated tile: what tiles remember between two runs."""
+
+from pathlib import Path
+
+from tilenca.base.errors import UsageError
+from tilenca.emulator.tile import EEPROM_BYTES, EmulatedTile
+from tilenca.emulator.types import port_name
+
+EEPROM_SUFFIX = ".eeprom"
+
+
+def load_eeprom(tile: EmulatedTile, directory: Path) -> bool:
+    """Puts a tile's file into its EEPROM; False if it has none.
+
+    Raises:
+        UsageError: the file cannot be read, or is not as long as the EEPROM.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        contents = path.read_bytes()
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; give --eeprom a directory of such files") from error
+    if len(contents) != EEPROM_BYTES:
+        raise UsageError(
+            f"{path}: {len(contents)} bytes, an EEPROM has {EEPROM_BYTES}; delete it to begin anew"
+        )
+    tile.write_eeprom(0, contents)
+    return True
+
+
+def save_eeprom(tile: EmulatedTile, directory: Path) -> None:
+    """Writes a tile's EEPROM to its file; all of it or nothing.
+
+    Raises:
+        UsageError: the directory cannot be written.
+    """
+    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        fresh = path.with_suffix(".new")
+        fresh.write_bytes(tile.read_eeprom())
+        fresh.replace(path)
+    except OSError as error:
+        raise UsageError(
+            f"{path}: {error.strerror}; give --eeprom a directory that can be written"
+        ) from error
