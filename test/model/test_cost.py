@@ -13,6 +13,7 @@ from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.model import cost, packing, render
 from tilenca.model.file import Dimensions, load_model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 
 WIDEST = Dimensions(51, 127, 127)  # of the buffers; a first layer that wide is refused
 WIDE = Dimensions(51, 120, 127)
@@ -104,6 +105,10 @@ def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytes
         cost.firmware_period_ms()
     ini.write_text("[env:megaatmega2560]\nbuild_flags = -D TILENCA_PERIOD_MS=77 -D X\n", encoding="utf-8")
     assert cost.firmware_period_ms() == 77
+
+
+def test_the_default_period_is_the_one_that_platformio_ini_builds() -> None:
+    assert cost.firmware_period_ms() == DEFAULT_PERIOD_MS
 
 
 def test_a_check_is_one_line_for_people() -> None:

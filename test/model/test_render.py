@@ -21,10 +21,6 @@ def test_the_same_model_renders_to_the_same_text(model: Model) -> None:
     assert render.render(model) == render.render(model)
 
 
-def test_a_digit_has_its_own_colour_wherever_it_stands() -> None:
-    assert render.looks_of(("7", "0"))[0].colour == render.looks_of(tuple("0123456789"))[7].colour
-
-
 def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     """No model file can reach 24 bits; a narrower accumulator would wrap with this one."""
     render.check_fits(model)

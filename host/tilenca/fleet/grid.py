@@ -10,7 +10,7 @@ from tilenca.fleet.layout import arrange
 from tilenca.fleet.link_health import FAILING
 from tilenca.fleet.state import Fleet, TileView
 from tilenca.fleet.tiles_file import Place
-from tilenca.shapes.glyphs import colour_number, colour_of_class
+from tilenca.shapes.glyphs import look_of
 
 Position = tuple[int, int]
 
@@ -159,7 +159,7 @@ def _colour(view: TileView) -> tuple[int, int, int]:
         return (0, 0, 0)
     classes = min(view.hello.classes if view.hello else 10, len(state.state))
     scores = state.state[-classes:]
-    return colour_of_class(colour_number(state.label, scores.index(max(scores))))
+    return look_of(state.label, scores.index(max(scores))).colour
 
 
 def _mark(view: TileView, side: str) -> Mark:
