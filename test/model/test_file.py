@@ -13,7 +13,8 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.model.file import load_model
+from tilenca.model.file import Dimensions, load_model
+from tilenca.training.recipes import RECIPES
 
 
 @pytest.fixture
@@ -103,3 +104,8 @@ def test_cut_or_changed_weights_are_refused(model: Path, damage: Callable[[bytes
     path = model / "weights.npz"
     path.write_bytes(damage(path.read_bytes()))
     assert refusal(model).startswith(str(path))
+
+
+def test_the_default_widths_are_those_of_the_shipped_digits() -> None:
+    assert Dimensions() == load_model(paths.DEFAULT_MODEL).dimensions
+    assert RECIPES["full"].hidden == Dimensions().hidden1

@@ -31,15 +31,17 @@ def test_own_message_is_perceived_as_it_is_and_neighbours_as_last_sent() -> None
 
 
 def test_an_untrained_cell_does_nothing() -> None:
-    net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), np.random.default_rng(0)))
+    net = TileNet(
+        Dimensions(21, 40, 40), True, initial_arrays(Dimensions(21, 40, 40), np.random.default_rng(0))
+    )
     state = torch.randint(-127, 128, (9, 21)).float()
     after = net.update(state, torch.randint(-127, 128, (9, 105)).float(), torch.ones(9, 1), net.weights())
     assert torch.equal(after, state)
 
 
 def test_projection_brings_every_weight_into_the_integer_range() -> None:
-    huge = {name: np.full(shape, 1e3, np.float32) for name, shape in Dimensions().shapes().items()}
-    net = TileNet(Dimensions(), True, huge)
+    huge = {name: np.full(shape, 1e3, np.float32) for name, shape in Dimensions(21, 40, 40).shapes().items()}
+    net = TileNet(Dimensions(21, 40, 40), True, huge)
     net.project()
     for name, value in net.named_parameters():
         assert (value * SCALES[name] == LARGEST[name]).all(), name

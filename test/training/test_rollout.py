@@ -18,7 +18,11 @@ def test_a_rollout_and_its_gradient_equal_those_of_plain_autograd(
     drawings: Drawings, quantisation_aware: bool
 ) -> None:
     random = np.random.default_rng(7)
-    net = TileNet(Dimensions(), quantisation_aware, initial_arrays(Dimensions(), random, zero_last=False))
+    net = TileNet(
+        Dimensions(21, 40, 40),
+        quantisation_aware,
+        initial_arrays(Dimensions(21, 40, 40), random, zero_last=False),
+    )
     batch = drawings.batch(np.arange(len(drawings)))
     # Stored states are whole multiples of 2^-13, saturated.
     states = np.round(random.normal(size=(len(batch.sample), 21)) * 8192).clip(-16256, 16256) / 8192
@@ -47,7 +51,7 @@ def test_a_rollout_and_its_gradient_equal_those_of_plain_autograd(
             {name: value.grad.clone() for name, value in net.named_parameters() if value.grad is not None}
         )
     torch.testing.assert_close(ends[0], ends[1], rtol=0, atol=0 if quantisation_aware else 1e-4)
-    assert set(gradients[0]) == set(Dimensions().shapes())
+    assert set(gradients[0]) == set(Dimensions(21, 40, 40).shapes())
     for name, gradient in gradients[0].items():
         size = gradients[1][name].abs().max()
         assert size > 0, f"no gradient reaches {name}"
@@ -56,7 +60,9 @@ def test_a_rollout_and_its_gradient_equal_those_of_plain_autograd(
 
 def test_the_result_does_not_depend_on_the_number_of_threads(drawings: Drawings) -> None:
     random = np.random.default_rng(13)
-    net = TileNet(Dimensions(), True, initial_arrays(Dimensions(), random, zero_last=False))
+    net = TileNet(
+        Dimensions(21, 40, 40), True, initial_arrays(Dimensions(21, 40, 40), random, zero_last=False)
+    )
     batch = drawings.batch(random.integers(len(drawings), size=16))
     schedule = draw_schedule(RECIPES["full"], batch, np.full(16, 12), random, usual(batch))
     start = torch.zeros(len(batch.sample), 21)

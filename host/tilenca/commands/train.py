@@ -18,7 +18,7 @@ from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, seed, whole
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
-from tilenca.model.file import MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
+from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.file import UNKNOWN
@@ -71,9 +71,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--state",
         type=whole(2, MAX_CHANNELS),
-        default=21,
+        default=DEFAULT_CHANNELS,
         metavar="C",
-        help="channels of the state (default 21)",
+        help=f"channels of the state (default {DEFAULT_CHANNELS})",
     )
     parser.add_argument(
         "--hidden",
