@@ -4,11 +4,18 @@ import os
 import signal
 import tempfile
 
+from hypothesis import HealthCheck, settings
+
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
 from support.terminal import pty
 
 __all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
+
+
+# How long an example takes says how busy the machine is, not whether it is right.
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")
 
 
 def pytest_configure() -> None:
