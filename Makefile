@@ -20,8 +20,8 @@ unexport PLATFORMIO_CORE_DIR
 
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-demo setup-train setup-test setup-check demo test check static format-check lint imports types budgets \
-	format train bench clean
+.PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
+	imports types budgets docs format train bench clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -30,7 +30,7 @@ help: ## list these targets
 setup: setup-demo ## make this clone ready: system packages, .venv, C++ libraries, PlatformIO
 
 setup-train: ## the same, with PyTorch for training
-setup-demo setup-train setup-test setup-check:
+setup-demo setup-train setup-test setup-check setup-docs:
 	@sh tools/setup/setup.sh $(@:setup-%=%)
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
@@ -45,7 +45,7 @@ test: setup-test ## run every test: the firmware's core on this machine, then ho
 
 check: static test ## what to run before every commit: format, lint, imports, types, budgets, tests
 
-static: format-check lint imports types budgets ## everything of `make check` but the tests
+static: format-check lint imports types budgets docs ## everything of `make check` but the tests
 
 format-check: setup-check
 	@.venv/bin/ruff format --check
@@ -68,6 +68,11 @@ budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware wi
 	@$(TILENCA) export --check
 	@$(TOOL) firmware.budgets $(ELF)
 
+docs: setup-docs ## build the documentation site into build/docs; warnings and broken links are errors
+	@.venv/bin/sphinx-build -q -E -n -W --keep-going -c tools/docs -d build/docs/.doctrees . build/docs
+	@$(PYTHON) tools/docs/links.py build/docs
+	@echo "build/docs/index.html"
+
 format: setup-check ## format all Python and C++
 	@.venv/bin/ruff format
 	@.venv/bin/clang-format -i $(CPP)
@@ -85,5 +90,5 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/emulator build/simulator build/training build/strict build/test build/models
+	@rm -rf .pio build/emulator build/simulator build/training build/strict build/test build/models build/docs
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -1,16 +1,17 @@
-// A tile: read the four sides, tick, write what it says, show it.
+// A tile: read the four sides, tick, write its frames, show its class.
 #include <Arduino.h>
 
 #include "app/appearance.h"
 #include "app/button.h"
 #include "app/host.h"
+#include "app/settings_store.h"
 #include "app/telemetry.h"
 #include "app/tile.h"
 #include "app/timing.h"
 #include "board/boot.h"
 #include "board/chip.h"
+#include "board/display.h"
 #include "board/eeprom.h"
-#include "board/face.h"
 #include "board/links.h"
 #include "board/pins.h"
 #include "board/usart.h"
@@ -21,35 +22,15 @@ using namespace tilenca;
 namespace {
 
 constexpr uint32_t kHostBaud = 115200;
-constexpr uint16_t kLeastStack = 64; // less of it unused is an error
+constexpr uint16_t kLeastStack = 64; // fewer unused bytes are an error
 constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
 
 Telemetry telemetry;
 
-Settings read_settings() {
-    uint8_t first[kSettingsSize], second[kSettingsSize];
-    while (board::eeprom_writing()) { // since before a reset
-    }
-    board::eeprom_read(board::Kept::First, first, sizeof first);
-    board::eeprom_read(board::Kept::Second, second, sizeof second);
-    Settings settings = kDefaults;
-    if (parse_settings(first, &settings)) {
-        return settings;
-    }
-    if (parse_settings(second, &settings)) {
-        // The next change writes the second ones first: the first must be whole by then.
-        board::eeprom_write(second, sizeof second);
-        while (board::eeprom_writing()) {
-        }
-    } else if (!is_blank(first)) {
-        telemetry.failed(Error::Settings);
-    }
-    return settings;
-}
-
 Boot boot;
-Tile tile(model::kModel, read_settings(), 0);
+Tile tile(model::kModel, kDefaults, 0);
+SettingsStore<board::Eeprom> store;
 Host host(kDefaults, boot);
 Timing timing;
 Sentence sentence;
@@ -100,37 +81,12 @@ void write_sides() {
     }
 }
 
-// What the host says waits in its ring while there is no room for the answer, or EEPROM is being written.
+// The host's bytes wait in their ring while there is no room for an answer, and while EEPROM is being
+// written.
 void obey(uint32_t now_ms) {
-    enum class Writing : uint8_t { Nothing, New, Old };
-    static Writing writing = Writing::Nothing;
-    uint8_t byte;
-    if (writing != Writing::Nothing && !board::eeprom_writing() && room_to_speak()) {
-        const bool is_new = writing == Writing::New;
-        writing = Writing::Nothing;
-        if (is_new) {
-            uint8_t first[kSettingsSize], second[kSettingsSize];
-            board::eeprom_read(board::Kept::First, first, sizeof first);
-            board::eeprom_read(board::Kept::Second, second, sizeof second);
-            if (!host.stored(first, second, &tile, &sentence)) {
-                board::eeprom_write(host.block(), kSettingsSize);
-                writing = Writing::Old;
-            }
-            say_sentence();
-        }
-    }
-    while (writing == Writing::Nothing && room_to_speak() && board::usart_read(board::kHostUsart, &byte)) {
-        switch (host.receive(byte, &tile, now_ms, &sentence)) {
-        case Host::Result::Nothing:
-            break;
-        case Host::Result::Answer:
-            say_sentence();
-            break;
-        case Host::Result::Store:
-            board::eeprom_write(host.block(), kSettingsSize);
-            writing = Writing::New;
-            break;
-        }
+    const auto read = [](uint8_t* byte) { return board::usart_read(board::kHostUsart, byte); };
+    while (!store.writing() && room_to_speak() && host.answer(store, read, &tile, now_ms, &sentence)) {
+        say_sentence();
     }
 }
 
@@ -181,6 +137,14 @@ void sleep() {
     timing.slept(board::stamp() - before);
 }
 
+void load_settings() {
+    Settings settings = kDefaults;
+    if (store.load(&settings) == SettingsStore<board::Eeprom>::Found::Damage) {
+        telemetry.failed(Error::Settings);
+    }
+    tile.apply(settings);
+}
+
 } // namespace
 
 void setup() {
@@ -188,12 +152,13 @@ void setup() {
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
     }
-    while (!board::stack_watch()) { // so that the first report knows
+    while (!board::stack_watch()) { // so that the first report is right
     }
     board::clock_begin();
+    board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
-    board::face_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
+    load_settings();
     board::watchdog_begin();
     write_hello(tile, boot, &sentence);
     say_sentence();

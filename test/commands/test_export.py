@@ -194,7 +194,7 @@ def test_the_compiled_files_hold_exactly_the_model(
                 for (int i = 0; i < layer.inputs; ++i) printf("%d ", row.next());
             }
             for (int j = 0; j < layer.outputs; ++j) printf("%d ", layer.bias(j));
-            for (int j = 0; j < layer.outputs; j += kPassOutputs) printf("%d ", layer.narrow(j));
+            for (int j = 0; j < layer.outputs; j += kBlockOutputs) printf("%d ", layer.is_16_bit(j));
             printf("\\n");
         }
         int main() {

@@ -157,7 +157,8 @@ def recorded(tmp_path: Path) -> Path:
         events.append(PortNews(1000.0, port, is_open=True))
     for second in range(11):
         for tile, port in ((1, "/lab/tiles/tile-01"), (2, "tile-02")):
-            said = TileSentence(tile, 1000 * second, second, "7" if second < 5 else "1", "----", STATE)
+            shown = 7 if second < 5 else 1
+            said = TileSentence(tile, 1000 * second, second, str(shown), shown, 30, "----", STATE)
             events.append(Heard(1000.0 + second, port, format_sentence(said).strip(), said))
     record.write_text("".join(map(format_event, events)))
     return record
@@ -235,7 +236,7 @@ def test_a_narrow_terminal_without_unicode_gets_what_fits(table: list[str], tmp_
     record = tmp_path / "record.jsonl"
     events: list[Event] = [PortNews(1.0, "/dev/ttyUSB0", is_open=True)]
     for tile in (1, 2):
-        raw = format_sentence(TileSentence(tile, 9, 1, "7", "----", STATE)).strip()
+        raw = format_sentence(TileSentence(tile, 9, 1, "7", 7, 30, "----", STATE)).strip()
         events.append(Heard(1.0, "/dev/ttyUSB0", raw, None))
     record.write_text("".join(map(format_event, events)))
     picture = on_terminal(record, (20, 40), table, TERM="xterm", PYTHONIOENCODING="ascii")

@@ -1,4 +1,4 @@
-"""The README's commands are true: each is known here, and what can run on a test machine runs."""
+"""What the README promises beyond its code blocks (test_code_blocks.py): tiles on ports, links, the film."""
 
 import os
 import re
@@ -9,88 +9,31 @@ import sys
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from tilenca.base import paths
 
 README = (paths.ROOT / "README.md").read_text(encoding="utf-8")
-
-# How each command of the README is tried: extra arguments that make it short, and the exit status expected.
-# Without tiles on USB the fleet commands must say so with 3. `make` targets are asked what they would do.
-TRIED: dict[str, tuple[list[str], int]] = {
-    "make demo": (["--dry-run"], 0),
-    "make test": (["--dry-run"], 0),
-    "make setup-train": (["--dry-run"], 0),
-    "tilenca emulate --shape 4 --watch": (["--updates", "30"], 0),
-    "tilenca train --shapes my-shapes.toml --out models/mine": (["--recipe", "smoke"], 0),
-    "tilenca evaluate --model models/mine --shapes my-shapes.toml": (["--runs", "2", "--steps", "5"], 0),
-    "tilenca export --model models/mine": (["--out", "firmware-mine"], 0),
-    "tilenca devices": (["--port", "none-*"], 3),
-    "python host/flash_all.py": (["--no-build", "--port", "none"], 3),
-    "python host/monitor.py": (["--port", "none"], 3),  # for a pattern it would wait a little
-}
-# These two belong together: see the test of them.
 SERVE = "tilenca emulate --shape 4 --serve tiles --seconds 20 &"
 MONITOR = "tilenca monitor --port 'tiles/*' --seconds 10"
-# Tried elsewhere (`pio run` by the set-up).
-ELSEWHERE = {
-    ". .venv/bin/activate",
-    "pio run",
-    "tilenca emulate --shapes my-shapes.toml",
-    SERVE,
-    MONITOR,
-}
-
+FILM = "docs/images/agree.gif"
+MOST_BYTES = 500_000
 
 ENVIRONMENT = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
 
 
-def commands() -> list[str]:
-    blocks = re.findall(r"^```sh\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
-    return [line for block in blocks for line in block.splitlines() if line]
-
-
-def test_every_command_of_the_readme_is_known() -> None:
-    assert set(commands()) == set(TRIED) | ELSEWHERE
-
-
-@pytest.fixture(scope="module")
-def reader(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A directory as the reader's: with the README's own shape file in it."""
-    directory = tmp_path_factory.mktemp("reader")
-    (drawing,) = re.findall(r"^```toml\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
-    (directory / "my-shapes.toml").write_text(drawing, encoding="utf-8")
-    (directory / "host").symlink_to(paths.ROOT / "host")
-    (directory / "firmware-mine").mkdir()
-    (directory / "Makefile").symlink_to(paths.ROOT / "Makefile")
-    return directory
-
-
-def test_the_commands_run_as_written_in_their_order(reader: Path) -> None:
-    for command in commands():
-        if command not in TRIED:
-            continue
-        more, status = TRIED[command]
-        done = subprocess.run(
-            [*shlex.split(command), *more],
-            cwd=reader,
-            env=ENVIRONMENT,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
-        assert done.returncode == status, f"{command}: {done.stderr}"
-        assert "Traceback" not in done.stderr
-
-
-def test_tiles_can_be_watched_as_soon_as_they_are_asked_for(reader: Path) -> None:
+def test_tiles_can_be_watched_as_soon_as_they_are_asked_for(tmp_path: Path) -> None:
+    assert f"{SERVE}\n{MONITOR}\n" in README
     serving = subprocess.Popen(
-        shlex.split(SERVE.removesuffix(" &")), cwd=reader, env=ENVIRONMENT, stderr=subprocess.PIPE, text=True
+        shlex.split(SERVE.removesuffix(" &")),
+        cwd=tmp_path,
+        env=ENVIRONMENT,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     done = subprocess.run(
         [*shlex.split(MONITOR), "--seconds", "1"],
-        cwd=reader,
+        cwd=tmp_path,
         env=ENVIRONMENT,
         capture_output=True,
         text=True,
@@ -102,11 +45,25 @@ def test_tiles_can_be_watched_as_soon_as_they_are_asked_for(reader: Path) -> Non
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("PORT open") == 10, done.stdout
     assert serving.returncode == 130, chatter
-    assert not (reader / "tiles").exists()
+    assert not (tmp_path / "tiles").exists()
 
 
-@pytest.mark.parametrize("left", ["tiles/tile-01", "tiles.toml", "my-shapes.toml", "models/mine/model.json"])
-def test_what_following_the_readme_leaves_is_not_for_git(left: str) -> None:
+@pytest.mark.parametrize(
+    "left",
+    [
+        "tiles/tile-01",
+        "tiles.toml",
+        "my-shapes.toml",
+        "models/mine/model.json",
+        "models/kept/model.json",
+        "my-letters.toml",
+        "t.gif",
+        "frames.jsonl",
+        "lab.jsonl",
+        "pins.vcd",
+    ],
+)
+def test_what_following_the_documents_leaves_is_not_for_git(left: str) -> None:
     if not (paths.ROOT / ".git").exists():
         pytest.skip("not a clone")
     assert subprocess.run(["git", "-C", paths.ROOT, "check-ignore", "-q", left], check=False).returncode == 0
@@ -116,7 +73,21 @@ def test_links_lead_somewhere() -> None:
     for document in [
         paths.ROOT / "README.md",
         paths.ROOT / "CONTRIBUTING.md",
-        *(paths.ROOT / "docs").glob("*.md"),
+        *(paths.ROOT / "docs").rglob("*.md"),
     ]:
         for target in re.findall(r"\]\((?!https?:)([^)#]+)", document.read_text(encoding="utf-8")):
             assert (document.parent / target).exists(), f"{document.name} links to {target}"
+
+
+def test_the_film_shows_the_shape_it_was_made_of() -> None:
+    """It repeats for ever, and has a frame for each step of the command in docs/images/agree.toml."""
+    film = paths.ROOT / FILM
+    assert f"]({FILM})" in README
+    assert film.stat().st_size < MOST_BYTES
+    recipe = (paths.ROOT / "docs/images/agree.toml").read_text(encoding="utf-8")
+    steps = re.search(r"--steps (\d+)", recipe)
+    assert steps is not None
+    with Image.open(film) as picture:
+        assert picture.info["loop"] == 0
+        assert getattr(picture, "n_frames", 1) == int(steps[1]) + 1
+    assert recipe.count("#", recipe.index("grid")) == 20, "the README says twenty tiles"

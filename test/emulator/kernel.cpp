@@ -1,4 +1,4 @@
-// Runs the assembly and the portable C++ on the same inputs, pass by pass, and counts where they differ.
+// Runs the assembly and the portable C++ on the same inputs, block by block, and counts where they differ.
 //
 // VECTORS for each layer; with HOSTILE, a timer interrupts at random, every 40 cycles at the least, and uses
 // all that the kernel uses.
@@ -15,10 +15,11 @@ using namespace tilenca;
 // What the test looks at.
 volatile uint16_t vectors, calls, differences, done;
 volatile uint32_t interrupts;
-volatile uint16_t wide_passes, zero_outputs, full_outputs, full_states;
-int8_t inputs[kMaxInputs + 1];
-int16_t states[kMaxChannels + kPassOutputs], start_states[kMaxChannels + kPassOutputs];
-uint8_t last_output;
+volatile uint16_t blocks_of_24_bits, zero_outputs, full_outputs, full_states;
+#define LOOKED_AT __attribute__((used)) // though the program does not read it
+LOOKED_AT int8_t inputs[kMaxInputs + 1];
+LOOKED_AT int16_t states[kMaxChannels + kBlockOutputs];
+LOOKED_AT int16_t start_states[kMaxChannels + kBlockOutputs];
 
 namespace {
 
@@ -79,14 +80,14 @@ void differs_if(bool so, const Layer& layer) {
     ++calls;
 }
 
-// Up to four passes in one call.
+// Up to four blocks in one call.
 uint8_t some_outputs(uint8_t left) {
-    const uint8_t some = kPassOutputs * (1 + draw() % 4);
+    const uint8_t some = kBlockOutputs * (1 + draw() % 4);
     return some < left ? some : left;
 }
 
 void compare_hidden(const Layer& layer, int8_t least) {
-    static int8_t outputs[5 * kPassOutputs], expected[5 * kPassOutputs];
+    static int8_t outputs[5 * kBlockOutputs], expected[5 * kBlockOutputs];
     draw_inputs(layer, least);
     const Inputs given = {inputs, sum_of(inputs, layer.inputs)};
     for (uint8_t from = 0, count; from < layer.outputs; from += count) {
@@ -94,7 +95,7 @@ void compare_hidden(const Layer& layer, int8_t least) {
         memset(outputs, 99, sizeof outputs);
         memset(expected, 99, sizeof expected);
         count = some_outputs(layer.outputs - from);
-        const uint8_t whole = (count + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
+        const uint8_t whole = (count + kBlockOutputs - 1) / kBlockOutputs * kBlockOutputs;
         const int16_t sum = hidden_outputs(layer, given, from, from + count, outputs + 4 - from);
         hidden_outputs<OneCell>(layer, inputs, from, from + whole, expected + 4 - from);
         differs_if(memcmp(outputs, expected, sizeof outputs) != 0 || sum != sum_of(expected + 4, whole),
@@ -103,7 +104,7 @@ void compare_hidden(const Layer& layer, int8_t least) {
             zero_outputs += expected[4 + i] == 0;
             full_outputs += expected[4 + i] == 127;
         }
-        wide_passes += !layer.narrow(from);
+        blocks_of_24_bits += !layer.is_16_bit(from);
     }
 }
 
@@ -115,10 +116,10 @@ int16_t any_state() {
 }
 
 void compare_output(const Layer& layer) {
-    static int16_t expected[kMaxChannels + kPassOutputs];
+    static int16_t expected[kMaxChannels + kBlockOutputs];
     draw_inputs(layer, 0);
     const Inputs given = {inputs, sum_of(inputs, layer.inputs)};
-    for (uint8_t c = 0; c < kMaxChannels + kPassOutputs; ++c) {
+    for (uint8_t c = 0; c < kMaxChannels + kBlockOutputs; ++c) {
         states[c] = start_states[c] = expected[c] = any_state();
     }
     for (uint8_t from = 0, count; from < layer.outputs; from += count) {
@@ -126,7 +127,7 @@ void compare_output(const Layer& layer) {
         add_outputs(layer, given, from, from + count, states);
         add_outputs<OneCell>(layer, inputs, from, from + count, expected);
         differs_if(memcmp(states, expected, sizeof states) != 0, layer);
-        wide_passes += !layer.narrow(from);
+        blocks_of_24_bits += !layer.is_16_bit(from);
     }
     for (uint8_t c = 0; c < layer.outputs; ++c) {
         full_states += expected[c] == kStateMax || expected[c] == -kStateMax;

@@ -1,4 +1,4 @@
-"""The host's commands on the chip: settings in EEPROM, the face, and nothing that stalls the tile."""
+"""The host's commands on the chip: settings in EEPROM, the display, and nothing that stalls the tile."""
 
 import itertools
 import random
@@ -40,7 +40,7 @@ def test_a_tile_speaks_within_a_fifth_of_a_second(talk: Talk) -> None:
 def test_asked_it_greets_again(talk: Talk) -> None:
     hello = talk.last(HelloSentence)
     assert (hello.version, hello.tile, hello.period_ms, hello.updates, hello.brightness) == (
-        2,
+        3,
         7,
         100,
         0,
@@ -148,7 +148,7 @@ def test_a_restart_begins_from_the_seed(talk: Talk) -> None:
     assert talk.last(TileSentence).updates <= 3
 
 
-def test_a_face_blinks_and_then_shows_its_class_again(talk: Talk) -> None:
+def test_a_display_blinks_and_then_shows_its_class_again(talk: Talk) -> None:
     assert talk.ask(blink_command(2)) == AckSentence(7, "BLINK", ("2",))
     before = len(talk.tile.display_changes)
     talk.listen(2.2)
@@ -163,7 +163,7 @@ SEGMENT_PINS = [("H", 4), ("H", 3), ("E", 3), ("B", 7), ("B", 6), ("H", 6), ("H"
 
 def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
     def duties() -> list[float]:
-        """All segments, which are lit while the face blinks; and the colour then, which follows them."""
+        """All segments, which are lit while the display blinks, and the colour then, which follows them."""
         talk.ask(blink_command(5))
         lit = 0
         for _ in range(200):
@@ -171,7 +171,7 @@ def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
             lit = lit + 1 if talk.tile.segments == ALL else 0
             if lit == 3:
                 return [talk.tile.duty(*pin) for pin in SEGMENT_PINS] + [v / 255 for v in talk.tile.rgb]
-        raise AssertionError("a blinking face is lit half of the time")
+        raise AssertionError("a blinking display is lit half of the time")
 
     full = duties()
     assert full[:7] == [1.0] * 7

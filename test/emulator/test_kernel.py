@@ -45,7 +45,7 @@ SIZES = [
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
-def test_every_pass_is_that_of_the_portable_code(size: Dimensions, tmp_path: Path) -> None:
+def test_every_block_is_that_of_the_portable_code(size: Dimensions, tmp_path: Path) -> None:
     vectors = min(3000, 6_000_000 // (size.hidden1 * size.channels * 5 + size.hidden1 * size.hidden2))
     tile = run(random_network(size, 127, 32767), tmp_path, vectors)
     assert tile.integer("differences") == 0
@@ -53,7 +53,7 @@ def test_every_pass_is_that_of_the_portable_code(size: Dimensions, tmp_path: Pat
     assert tile.integer("full_outputs") > 0
     assert tile.integer("full_states") > 0
     if size.hidden1 >= 40:
-        assert tile.integer("wide_passes") == tile.integer("calls")
+        assert tile.integer("blocks_of_24_bits") == tile.integer("calls")
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(
         assert max(part.most for part in parts) == 32767
         assert min(part.least for part in parts) == -32768
     tile = run(model, tmp_path, 1000)
-    assert tile.integer("wide_passes") == 0
+    assert tile.integer("blocks_of_24_bits") == 0
     assert tile.integer("differences") == 0
     assert tile.integer("zero_outputs") > 0
     assert tile.integer("full_outputs") > 0
@@ -89,16 +89,16 @@ def test_sums_of_16_bits_reach_both_ends_and_do_not_wrap(
 
 
 @pytest.mark.parametrize("first", [0, 1])
-def test_passes_of_both_kinds_take_turns(first: int, tmp_path: Path) -> None:
+def test_blocks_of_both_kinds_take_turns(first: int, tmp_path: Path) -> None:
     """Within a layer, and within a call."""
     model = random_network(Dimensions(21, 40, 40), 127, 100)
     for layer in (1, 2, 3):
-        is_narrow = np.arange(len(model.integer[f"b{layer}"])) // packing.BLOCK_OUTPUTS % 2 == first
-        model.integer[f"w{layer}"][is_narrow] //= 64
+        is_16_bit = np.arange(len(model.integer[f"b{layer}"])) // packing.BLOCK_OUTPUTS % 2 == first
+        model.integer[f"w{layer}"][is_16_bit] //= 64
         kinds = [part.is_16_bit for part in packing.blocks(model, layer)]
-        assert kinds == list(is_narrow[:: packing.BLOCK_OUTPUTS])
+        assert kinds == list(is_16_bit[:: packing.BLOCK_OUTPUTS])
     tile = run(model, tmp_path, 1000)
-    assert tile.integer("wide_passes") > 0
+    assert tile.integer("blocks_of_24_bits") > 0
     assert tile.integer("differences") == 0
 
 
@@ -115,7 +115,7 @@ def test_interrupts_between_any_two_instructions_change_nothing(reach: int, tmp_
     """They multiply, read flash, and come at random, as often as the chip can bear."""
     tile = run(random_network(Dimensions(21, 40, 40), reach, 100), tmp_path, 300, "-DHOSTILE")
     assert tile.integer("interrupts") > 10_000
-    assert (tile.integer("wide_passes") == 0) == (reach == 3)
+    assert (tile.integer("blocks_of_24_bits") == 0) == (reach == 3)
     assert tile.integer("differences") == 0
 
 
@@ -143,7 +143,7 @@ def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
         random_network(Dimensions(21, 40, 40), 1, 1), DRIVER, tmp_path, "-DVECTORS=1"
     )
     listing = parse(disassemble(elf))
-    found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_passes"])
+    found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_blocks"])
     assert found + stack.RETURN_ADDRESS == 33
 
 

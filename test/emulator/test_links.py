@@ -18,6 +18,8 @@ USARTS = (NORTH, EAST, WEST)
 SLICE_S = 0.01
 # A queue of 64 bytes holds one less.
 QUEUE = 63
+# Together kReadEveryUs of links.h: how long nobody reads, and what it takes to read all that came meanwhile.
+DEAF_S, READING_S = 0.0035, 0.0015
 
 PROGRAM = """
 #include <avr/interrupt.h>
@@ -52,6 +54,7 @@ def elf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sources = [
         FIRMWARE / "src" / "board" / f"{name}.cpp" for name in ("chip", "links", "south_uart", "usart")
     ]
+    sources += [FIRMWARE / "src" / "avr" / f"{name}.S" for name in ("south_uart", "usart")]
     sources += [FIRMWARE / "src" / "core" / "toggles.cpp", directory / "main.cpp"]
     flags = (
         "-mmcu=atmega2560",
@@ -127,6 +130,23 @@ def test_what_is_not_read_in_time_is_counted_and_what_comes_later_is_heard(elf: 
     run(array, 0.1, [Vandal(array[0], side, line(b"later", now_s + 0.01, BAUD[side])) for side in SIDES])
     assert [after - before for after, before in zip(numbers(array, "heard"), heard, strict=True)] == [5] * 4
     assert numbers(array, "lost") == lost
+
+
+def test_sides_that_are_read_every_five_milliseconds_lose_nothing(elf: Path) -> None:
+    """At full rate, with as many edges as a line can have."""
+    array = Array(elf)
+    count = 400
+    vandals = [Vandal(array[0], side, line(b"\x55" * count, 0.01, BAUD[side])) for side in SIDES]
+    for vandal in vandals:
+        vandal.play(0.0, 0.2)
+    deaf, _ = array.symbol("deaf")
+    while array.time_s < 0.15:
+        array[0].write_memory(deaf & 0xFFFF, b"\1")
+        array.run(DEAF_S)
+        array[0].write_memory(deaf & 0xFFFF, b"\0")
+        array.run(READING_S)
+    assert numbers(array, "lost") == [0] * 4
+    assert numbers(array, "heard") == [count] * 4
 
 
 def spent(elf: Path, edges: Iterator[tuple[float, bool]]) -> float:

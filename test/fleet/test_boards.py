@@ -186,7 +186,7 @@ def test_a_serial_number_that_is_no_text_disturbs_no_terminal(lab: list[ListPort
 
 
 def test_a_tile_that_calls_itself_otherwise_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    hello = HelloSentence(2, 9, 0, 21, 10, 100, 0, 0, 0, 255)
+    hello = HelloSentence(3, 9, 0, 21, 10, 100, 0, 0, 0, 255)
     tell_contradiction("p", 9, hello)
     tell_contradiction("p", None, hello)
     tell_contradiction("p", 7, None)
@@ -196,7 +196,7 @@ def test_a_tile_that_calls_itself_otherwise_is_told(capsys: pytest.CaptureFixtur
 
 
 def test_tiles_that_run_another_model_than_most_are_told(capsys: pytest.CaptureFixture[str]) -> None:
-    ours, other = (HelloSentence(2, 3, model, 21, 10, 100, 0, 0, 0, 255) for model in (0xABCD, 0x1234))
+    ours, other = (HelloSentence(3, 3, model, 21, 10, 100, 0, 0, 0, 255) for model in (0xABCD, 0x1234))
     tell_models({})
     tell_models({"a": ours, "b": ours})
     assert capsys.readouterr().err == ""

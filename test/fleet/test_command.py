@@ -16,7 +16,7 @@ from tilenca.protocol.sentences import (
     format_sentence,
 )
 
-STATE = format_sentence(TileSentence(7, 100, 1, "4", "----", bytes([128] * 21)))
+STATE = format_sentence(TileSentence(7, 100, 1, "4", 4, 30, "----", bytes([128] * 21)))
 ORDER = set_command("period", 20)
 
 

@@ -16,7 +16,7 @@ from tilenca.protocol.sentences import (
 )
 
 PORT = "/dev/ttyACM0"
-TILE = TileSentence(7, 1000, 10, "4", "N---", bytes([128] * 21))
+TILE = TileSentence(7, 1000, 10, "4", 4, 30, "N---", bytes([128] * 21))
 LINK = LinkSentence(7, 1000, "N", 100, 100, 0, 0, 0, 5, 0, 8, "S")
 
 
@@ -40,10 +40,12 @@ def test_a_label_is_told_when_it_changes() -> None:
     log = Log()
     assert log.hear(TILE) == [("shows 4", False)]
     assert log.hear(replace(TILE, updates=11)) == []
-    assert log.hear(replace(TILE, label="1")) == [("shows 1, before 4", False)]
-    assert log.hear(replace(TILE, label="")) == [("shows nothing, before 1", False)]
+    assert log.hear(replace(TILE, label="1", class_index=1)) == [("shows 1, before 4", False)]
+    assert log.hear(replace(TILE, label="", class_index=None, margin=None)) == [
+        ("shows nothing, before 1", False)
+    ]
     [(started, bad)] = log.hear(HELLO)
-    assert started.startswith("started: protocol 2")
+    assert started.startswith("started: protocol 3")
     assert not bad
     assert log.hear(TILE)[0] == ("shows 4", False), "it has begun again"
 

@@ -11,7 +11,14 @@ from tilenca.fleet.link_health import WINDOW_MS, LinkHealth
 from tilenca.fleet.state import Event, Fleet, PortNews
 from tilenca.fleet.tiles_file import Place
 from tilenca.protocol.line_reader import Heard
-from tilenca.protocol.sentences import HelloSentence, LinkSentence, Sentence, TileSentence
+from tilenca.protocol.sentences import (
+    HelloSentence,
+    LinkSentence,
+    OtherVersionSentence,
+    Sentence,
+    TileSentence,
+)
+from tilenca.shapes.glyphs import look_of
 from tilenca.views.fleet_grid import age_text, full, short, small
 from tilenca.views.fleet_live import LiveView
 
@@ -51,9 +58,9 @@ class Lab:
 def three_in_an_l() -> Lab:
     lab = Lab()
     lab.open("a", "b", "c")
-    lab.say("a", TileSentence(1, 100, 7, "4", "-ES-", STATE), link(1, "E", 2), link(1, "S", 3))
-    lab.say("b", TileSentence(2, 100, 8, "4", "---W", STATE), link(2, "W", 1))
-    lab.say("c", TileSentence(3, 100, 9, "9", "N---", STATE), link(3, "N", 1))
+    lab.say("a", TileSentence(1, 100, 7, "4", 4, 30, "-ES-", STATE), link(1, "E", 2), link(1, "S", 3))
+    lab.say("b", TileSentence(2, 100, 8, "4", 4, 30, "---W", STATE), link(2, "W", 1))
+    lab.say("c", TileSentence(3, 100, 9, "9", 9, 30, "N---", STATE), link(3, "N", 1))
     return lab
 
 
@@ -74,7 +81,7 @@ def test_the_file_says_where_tiles_lie_and_which_are_missing() -> None:
 
 def test_a_link_that_should_be_there_is_marked_dead() -> None:
     lab = three_in_an_l()
-    lab.say("b", TileSentence(2, 200, 9, "4", "----", STATE))
+    lab.say("b", TileSentence(2, 200, 9, "4", 4, 30, "----", STATE))
     grid = Grid().cells(lab.fleet, 1.5)
     assert grid[0, 1].marks["W"] is Mark.DEAD
     assert grid[0, 0].marks["E"] is Mark.WELL, "the other direction is another link"
@@ -83,7 +90,7 @@ def test_a_link_that_should_be_there_is_marked_dead() -> None:
 
 def test_a_tile_with_another_model_is_marked_and_told_once_until_it_has_ours() -> None:
     lab = three_in_an_l()
-    lab.say("a", TileSentence(1, 1000, 10, "4", "--S-", STATE))
+    lab.say("a", TileSentence(1, 1000, 10, "4", 4, 30, "--S-", STATE))
     for second in range(1, 15):
         foreign = min(10 * second, 50)
         lab.say("a", LinkSentence(1, 1000 * second, "E", 0, 0, 0, 0, foreign, None, 0, None, None))
@@ -99,8 +106,8 @@ def test_a_tile_with_another_model_is_marked_and_told_once_until_it_has_ours() -
 def test_without_the_file_tiles_stay_where_they_were_while_a_link_fails() -> None:
     lab, grid = three_in_an_l(), Grid()
     grid.cells(lab.fleet, 1.0)
-    lab.say("a", TileSentence(1, 200, 9, "4", "--S-", STATE))
-    lab.say("b", TileSentence(2, 200, 9, "4", "----", STATE))
+    lab.say("a", TileSentence(1, 200, 9, "4", 4, 30, "--S-", STATE))
+    lab.say("b", TileSentence(2, 200, 9, "4", 4, 30, "----", STATE))
     cells = grid.cells(lab.fleet, 1.5)
     assert {place: cell.tile for place, cell in cells.items()} == {(0, 0): 1, (0, 1): 2, (1, 0): 3}
     assert (cells[0, 0].marks["E"], cells[0, 1].marks["W"]) == (Mark.DEAD, Mark.DEAD)
@@ -109,9 +116,9 @@ def test_without_the_file_tiles_stay_where_they_were_while_a_link_fails() -> Non
 def test_a_tile_that_was_moved_lies_where_it_is_now() -> None:
     lab, grid = three_in_an_l(), Grid()
     grid.cells(lab.fleet, 1.0)
-    lab.say("a", TileSentence(1, 200, 9, "4", "--S-", STATE))
-    lab.say("b", TileSentence(2, 200, 9, "4", "---W", STATE), link(2, "W", 3))
-    lab.say("c", TileSentence(3, 200, 9, "9", "NE--", STATE), link(3, "E", 2))
+    lab.say("a", TileSentence(1, 200, 9, "4", 4, 30, "--S-", STATE))
+    lab.say("b", TileSentence(2, 200, 9, "4", 4, 30, "---W", STATE), link(2, "W", 3))
+    lab.say("c", TileSentence(3, 200, 9, "9", 9, 30, "NE--", STATE), link(3, "E", 2))
     cells = grid.cells(lab.fleet, 1.5)
     assert {place: cell.tile for place, cell in cells.items()} == {(0, 0): 1, (1, 0): 3, (1, 1): 2}
 
@@ -122,7 +129,7 @@ def test_silent_and_absent_tiles_are_marked_and_one_that_came_back_elsewhere_is_
     grid = Grid().cells(lab.fleet, 9.0)
     assert {cell.tile: cell.trouble for cell in grid.values()} == {1: "silent", 2: "silent", 3: "away"}
     lab.open("c2")
-    lab.say("c2", TileSentence(3, 100, 1, "4", "N---", STATE), time_s=9.0)
+    lab.say("c2", TileSentence(3, 100, 1, "4", 4, 30, "N---", STATE), time_s=9.0)
     again = Grid().cells(lab.fleet, 9.0)
     assert [cell.trouble for cell in again.values() if cell.tile == 3] == [""]
 
@@ -131,7 +138,7 @@ def test_tiles_with_the_same_id_are_both_drawn() -> None:
     lab = Lab()
     lab.open("a", "b")
     for port in ("a", "b"):
-        lab.say(port, TileSentence(7, 100, 1, "4", "----", STATE))
+        lab.say(port, TileSentence(7, 100, 1, "4", 4, 30, "----", STATE))
     assert [cell.tile for cell in Grid().cells(lab.fleet, 1.0).values()] == [7, 7]
 
 
@@ -163,12 +170,35 @@ def test_the_log_tells_what_changed_and_nothing_twice() -> None:
     lab = Lab()
     lab.open("a")
     for label in ("4", "4", "9", "9"):
-        lab.say("a", TileSentence(1, 100, 1, label, "----", STATE))
-    lab.say("a", HelloSentence(2, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255))
+        lab.say("a", TileSentence(1, 100, 1, label, int(label), 30, "----", STATE))
+    lab.say("a", HelloSentence(3, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255))
     lab.take(Heard(1.0, "a", b"\x1bnoise", None))
     heads = [text.split(":")[0] for text in lab.news]
     assert heads == ["port open", "shows 4", "shows 9, before 4", "started", "damaged"]
     assert "watchdog" in lab.news[3]
+
+
+def test_a_tile_of_another_version_is_told_once_until_it_starts_again_as_ours() -> None:
+    lab = Lab()
+    lab.open("a")
+    lab.say("a", *[OtherVersionSentence(2, 1)] * 3)
+    assert [text for text in lab.news if "protocol 2" in text] == [OtherVersionSentence(2, 1).remedy]
+    lab.say("a", HelloSentence(3, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255), OtherVersionSentence(2, 1))
+    assert len([text for text in lab.news if "these tools speak" in text]) == 2
+
+
+def test_the_colour_is_that_of_the_class_which_the_tile_decided_for() -> None:
+    """The state's greatest score is the fifth class's; the tile decides by finer scores than it sends."""
+    lab = Lab()
+    lab.open("a")
+    for label, index, colour in (
+        ("A", 2, look_of("A", 2).colour),
+        ("7", 0, look_of("7", 7).colour),
+        ("", None, (0, 0, 0)),
+    ):
+        lab.say("a", TileSentence(1, 100, 1, label, index, None, "----", STATE))
+        (cell,) = Grid().cells(lab.fleet, 1.0).values()
+        assert cell.colour == colour
 
 
 said: st.SearchStrategy[Event] = st.one_of(
@@ -196,7 +226,7 @@ def test_on_a_narrow_terminal_the_log_says_what_happens_and_not_where_ports_are(
     view = LiveView(lab.fleet, Grid(), Console(width=50, height=24), table=False)
     lab.open(port)
     for label in "49":
-        said = Heard(1.0, port, b"", TileSentence(3, 100, 1, label, "----", STATE))
+        said = Heard(1.0, port, b"", TileSentence(3, 100, 1, label, int(label), 30, "----", STATE))
         lab.take(said)
         view.show(1.0, [said])
     assert view.lines(50, 24)[-1].plain.endswith(" tile   3 tile-03 shows 9, before 4")

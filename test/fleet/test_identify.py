@@ -17,7 +17,7 @@ from tilenca.protocol.sentences import (
     framed,
 )
 
-STATE = format_sentence(TileSentence(7, 100, 1, "4", "----", bytes([128] * 21)))
+STATE = format_sentence(TileSentence(7, 100, 1, "4", 4, 30, "----", bytes([128] * 21)))
 
 
 @pytest.fixture

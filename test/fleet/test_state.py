@@ -19,8 +19,8 @@ from tilenca.protocol.sentences import (
 )
 from tilenca.views.fleet_table import cells, log_line, summary
 
-HELLO = HelloSentence(2, 7, 0xBEEF, 21, 10, 250, 0, 4, 0xC0FFEE, 255)
-TILE = TileSentence(7, 1200, 12, "4", "N-SW", bytes(range(1, 22)))
+HELLO = HelloSentence(3, 7, 0xBEEF, 21, 10, 250, 0, 4, 0xC0FFEE, 255)
+TILE = TileSentence(7, 1200, 12, "4", 4, 30, "N-SW", bytes(range(1, 22)))
 LINK = LinkSentence(7, 1201, "E", 100, 98, 2, 3, 1, 15, 0, 8, "W")
 
 
@@ -92,6 +92,8 @@ def test_json_has_tile_port_time_type_and_fields() -> None:
             "uptime_ms": 1200,
             "updates": 12,
             "label": "4",
+            "class_index": 4,
+            "margin": 30,
             "links": "N-SW",
             "state": bytes(range(1, 22)).hex().upper(),
         },

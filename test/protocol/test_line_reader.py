@@ -16,7 +16,7 @@ from tilenca.protocol.sentences import (
     parse_sentence,
 )
 
-TILE = TileSentence(7, 1200, 12, "4", "N-SW", bytes(range(1, 22)))
+TILE = TileSentence(7, 1200, 12, "4", 4, 30, "N-SW", bytes(range(1, 22)))
 LINK = LinkSentence(7, 1201, "E", 100, 98, 2, 3, 1, 15, 0, 8, "W")
 
 # What a noisy line may carry between two sentences; without their own end, it must not swallow the next one.

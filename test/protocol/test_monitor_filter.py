@@ -18,7 +18,7 @@ from tilenca.protocol.sentences import NakSentence, TileSentence, format_sentenc
 
 FILTER = paths.ROOT / "monitor" / "filter_tilenca.py"
 PIO = Path(sys.executable).with_name("pio")
-TILE = TileSentence(7, 1200, 12, "4", "N-SW", bytes([128]) * 21)
+TILE = TileSentence(7, 1200, 12, "4", 4, 30, "N-SW", bytes([128]) * 21)
 LIMIT_S = 60
 
 
@@ -35,15 +35,17 @@ def decoder() -> Any:
 def test_sentences_become_words_however_they_are_cut(decoder: Any) -> None:
     stream = (format_sentence(TILE) + format_sentence(NakSentence(7, "VALUE", "SET"))).decode()
     shown = "".join(decoder.rx(character) for character in stream + "$")
-    assert shown == ("tile 7 TILE shows 4 update 12 up 1.2 s links N-SW\r\ntile 7 NAK SET: wrong field\r\n")
+    assert shown == (
+        "tile 7 TILE shows 4 margin 30 update 12 up 1.2 s links N-SW\r\ntile 7 NAK SET: wrong field\r\n"
+    )
 
 
 def test_damaged_lines_are_shown_and_the_next_is_read(decoder: Any) -> None:
     line = format_sentence(TILE).decode()
     shown = decoder.rx(line + line.replace("N-SW", "N\ufffdSW") + line + "$")
     good, damaged, again = shown.splitlines()
-    assert damaged.startswith("DAMAGED $TILE,7,1200,12,4,N?SW")
-    assert good == again == "tile 7 TILE shows 4 update 12 up 1.2 s links N-SW"
+    assert damaged.startswith("DAMAGED $TILE,7,1200,12,4,4,30,N?SW")
+    assert good == again == "tile 7 TILE shows 4 margin 30 update 12 up 1.2 s links N-SW"
 
 
 def test_what_the_board_test_says_passes_whole(decoder: Any) -> None:
@@ -81,7 +83,7 @@ def test_pio_device_monitor_shows_a_served_tile_in_words(tmp_path: Path) -> None
         with subprocess.Popen([*command, *port], stdin=slave, stdout=slave, stderr=slave) as monitor:
             try:
                 shown = read_until(master, b"tile 1 TIME computes")
-                assert b"tile 1 HELLO protocol 2 firmware" in shown
+                assert b"tile 1 HELLO protocol 3 firmware" in shown
                 assert b"tile 1 LINK N sent" in shown
                 assert b"$TILE" not in shown
             finally:

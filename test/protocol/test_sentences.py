@@ -25,14 +25,16 @@ from tilenca.protocol.sentences import (
 )
 
 u8, u16, u32 = (st.integers(0, 2**bits - 1) for bits in (8, 16, 32))
-labels = st.sampled_from(["", *"0123456789AbCdEFGHhIJKLMnoPqrStUuVWXYZ-_="])
+labels = st.sampled_from([*"0123456789AbCdEFGHhIJKLMnoPqrStUuVWXYZ-_="])
 links = st.tuples(*(st.sampled_from([side, "-"]) for side in "NESW")).map("".join)
+states = st.binary(min_size=1, max_size=51)
 sides = st.sampled_from("NESW")
 words = st.text("ABCXYZ", min_size=1, max_size=16)
 texts = st.text("abcXYZ 0129.-", max_size=60)
 sentences: st.SearchStrategy[Sentence] = st.one_of(
     st.builds(HelloSentence, st.just(PROTOCOL_VERSION), u8, u16, u8, u8, u16, u16, u8, u32, u8),
-    st.builds(TileSentence, u8, u32, u32, labels, links, st.binary(min_size=1, max_size=51)),
+    st.builds(TileSentence, u8, u32, u32, st.just(""), st.none(), st.none(), links, states),
+    st.builds(TileSentence, u8, u32, u32, labels, u8, st.none() | u8, links, states),
     st.builds(
         LinkSentence, u8, u32, sides, u32, u32, u32, u32, u32, st.none() | u32, u32,
         st.none() | u8, st.none() | sides,
@@ -55,9 +57,11 @@ def test_the_shared_files_are_what_their_script_writes() -> None:
 
 
 SENTENCES: dict[str, Sentence] = {
-    "hello of tile 7": HelloSentence(2, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128),
-    "tile before its first update": TileSentence(0, 0, 0, "", "----", bytes([0xC0, 0x80, 0x80])),
-    "tile after its first update": TileSentence(255, 4294967295, 1, "4", "N-S-", bytes([0xC0, 0x8A, 0x6C])),
+    "hello of tile 7": HelloSentence(3, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128),
+    "tile before its first update": TileSentence(0, 0, 0, "", None, None, "----", bytes([0xC0, 0x80, 0x80])),
+    "tile after its first update": TileSentence(
+        255, 4294967295, 1, "4", 0, 30, "N-S-", bytes([0xC0, 0x8A, 0x6C])
+    ),
     "link that never heard a frame": LinkSentence(7, 5, "W", 0, 0, 0, 0, 0, None, 0, None, None),
     "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210, 12, 200, "W"),
     "time": TimeSentence(7, 1000, 14200, 163, 2048, 5000, 3),
@@ -90,14 +94,17 @@ def test_sentence_cases() -> None:
         ("HELLO,1,7,BEEF,3,2,2000,30,0A", 1),
         ("LINK,7,5,W,0,0,0,0,0,", 1),
         ("LINK,7,300,E,1,3,1,0,0,210", 1),
-        ("HELLO,3,7,whatever comes", 3),
+        ("TILE,7,100,3,4,N-S-,C08A6C", 2),
+        ("TILE,7,100,0,,----,C08080", 2),
+        ("HELLO,2,7,BEEF,3,2,2000,30,0A,00C0FFEE,128", 2),
+        ("HELLO,4,7,whatever comes", 4),
         ("HELLO,1,7,BEEF,3,2,2000,30,0A,00C0FFEE,128", 1),
     ],
 )
 def test_another_version_is_told_with_its_remedy(text: str, version: int) -> None:
     sentence = parse_sentence(framed(text))
     assert sentence == OtherVersionSentence(version, 7)
-    assert f"protocol {version}, these tools speak 2: flash" in OtherVersionSentence(version, 7).remedy
+    assert f"protocol {version}, these tools speak 3: flash" in OtherVersionSentence(version, 7).remedy
 
 
 @given(sentences)
@@ -129,17 +136,22 @@ def test_a_good_checksum_alone_is_no_sentence(line: bytes) -> None:
 @pytest.mark.parametrize(
     "body",
     [
-        b"TILE,1,2,3,4,NESW,ABC",  # half a byte of state
-        b"TILE,1,2,3,44,NESW,AB",  # two labels
-        b"TILE,1,2,3,4,ENSW,AB",  # sides out of order
-        b"TILE,1,2,3,4,NESW," + b"AB" * 52,  # more channels than there are
-        b"TILE,-1,2,3,4,NESW,AB",
-        b"TILE,1,2,3,4,NESW,ab",
+        b"TILE,1,2,3,4,4,30,NESW,ABC",  # half a byte of state
+        b"TILE,1,2,3,44,4,30,NESW,AB",  # two labels
+        b"TILE,1,2,3,4,4,30,ENSW,AB",  # sides out of order
+        b"TILE,1,2,3,4,4,30,NESW," + b"AB" * 52,  # more channels than there are
+        b"TILE,-1,2,3,4,4,30,NESW,AB",
+        b"TILE,1,2,3,4,4,30,NESW,ab",
+        b"TILE,1,2,3,4,,30,NESW,AB",  # a label without a class
+        b"TILE,1,2,3,,4,30,NESW,AB",  # a class without a label
+        b"TILE,1,2,3,,,30,NESW,AB",  # a margin of nothing
+        b"TILE,1,2,3,4,4,-1,NESW,AB",
+        b"TILE,1,2,3,4,4,NESW,AB",
         b"LINK,1,2,X,3,4,5,6,7,8,0,,",
         b"LINK,1,2,N,3,4,5,6,7",
         b"LINK,1,2,N,3,4,5,6,7,8,0,1,X",
-        b"HELLO,2,2,ABCD,3,4,5,6,G0,00000000,1",
-        b"HELLO,2,2,ABCD,3,4,5,6,00",
+        b"HELLO,3,2,ABCD,3,4,5,6,G0,00000000,1",
+        b"HELLO,3,2,ABCD,3,4,5,6,00",
         b"TIME,1,2,3,4,5,6",
         b"ERROR,1,2,lower,text",
         b"ACK,1",

@@ -10,7 +10,7 @@ from typing import Self
 from tilenca.fleet.identify import STALE_S
 from tilenca.protocol.sentences import HelloSentence
 
-HELLO = HelloSentence(2, 7, 0xBEEF, 21, 10, 20, 0, 1, 0xABCDEF01, 255)
+HELLO = HelloSentence(3, 7, 0xBEEF, 21, 10, 20, 0, 1, 0xABCDEF01, 255)
 LIMIT_S = 30
 
 

@@ -16,7 +16,8 @@ from tilenca.protocol.sentences import (
 
 counts = st.integers(0, 2**32 - 1)
 tiles = st.integers(0, 255)
-labels = st.sampled_from(["", *"0123456789AbCdEF-"])
+bytes_ = st.integers(0, 254)
+labels = st.sampled_from("0123456789AbCdEF-")
 links = st.tuples(*(st.sampled_from([side, "-"]) for side in "NESW")).map("".join)
 states = st.lists(st.integers(1, 255), min_size=1, max_size=51).map(bytes)
 sentences: st.SearchStrategy[Sentence] = st.one_of(
@@ -33,7 +34,8 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
         counts,
         st.integers(0, 255),
     ),
-    st.builds(TileSentence, tiles, counts, counts, labels, links, states),
+    st.builds(TileSentence, tiles, counts, counts, st.just(""), st.none(), st.none(), links, states),
+    st.builds(TileSentence, tiles, counts, counts, labels, bytes_, st.none() | bytes_, links, states),
     st.builds(
         LinkSentence,
         tiles,

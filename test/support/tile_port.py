@@ -38,5 +38,9 @@ class Tile:
     def say(self, label: str = "4") -> None:
         self.updates += 1
         self.write(
-            format_sentence(TileSentence(self.tile, 100 * self.updates, self.updates, label, "N-SW", STATE))
+            format_sentence(
+                TileSentence(
+                    self.tile, 100 * self.updates, self.updates, label, int(label), 30, "N-SW", STATE
+                )
+            )
         )

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from setup import python
+from setup.__main__ import LEVELS, levels_up_to
 from setup.command import ROOT, SetupError, Stamp, digest, run
 
 APT = ROOT / "tools" / "setup" / "apt.sh"
@@ -159,3 +160,23 @@ def test_make_alone_lists_the_targets() -> None:
     )
     listed = {line.split()[0] for line in done.stdout.splitlines()[1:]}
     assert {"setup", "demo", "test", "check", "train", "bench", "format", "clean", "help"} <= listed
+
+
+@pytest.mark.parametrize(
+    ("level", "reached"),
+    [
+        ("demo", ["demo"]),
+        ("test", ["demo", "train", "test"]),
+        ("docs", ["demo", "docs"]),
+        ("check", ["demo", "train", "test", "docs", "check"]),
+    ],
+)
+def test_a_level_includes_those_below_it(level: str, reached: list[str]) -> None:
+    assert levels_up_to(level) == reached
+
+
+def test_every_level_has_its_extra_and_its_target() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert set(python.EXTRAS) == set(LEVELS)
+    for level in LEVELS:
+        assert f"setup-{level}" in makefile

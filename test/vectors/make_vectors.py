@@ -43,7 +43,7 @@ def payload(
     sequence: int,
     model: int,
     messages: Sequence[int],
-    first: int = 0x20,
+    first: int = 0x30,
     bad_crc: int = 0,
 ) -> bytes:
     """A frame's payload; `first` and `bad_crc` damage it on purpose."""
@@ -102,9 +102,9 @@ def frame_cases() -> list[tuple[str, int, bytes, list[str]]]:
         ("300 bytes without a delimiter, next survives", 3, b"\x55" * 300 + b"\0" + after, ["corrupt", then]),
         ("256 bytes more than a frame, next survives", 3, b"\1" * 256 + good + after, ["corrupt", then]),
         ("bad crc, next frame survives", 3, frame(*one, bad_crc=0x0100) + after, ["corrupt", then]),
-        ("version 1 with a good crc", 3, frame(*one, first=0x10) + after, ["corrupt", then]),
-        ("version 3 with a good crc", 3, frame(*one, first=0x30) + after, ["corrupt", then]),
-        ("wrong kind with a good crc", 3, frame(*one, first=0x24) + after, ["corrupt", then]),
+        ("version 2 with a good crc", 3, frame(*one, first=0x20) + after, ["corrupt", then]),
+        ("version 4 with a good crc", 3, frame(*one, first=0x40) + after, ["corrupt", then]),
+        ("wrong kind with a good crc", 3, frame(*one, first=0x34) + after, ["corrupt", then]),
         ("message -128 with a good crc", 3, frame(2, 12, 7, 0xBEEF, (1, -128, 3)) + after, ["corrupt", then]),
         ("bit flipped in the cobs code", 3, flipped + after, ["corrupt", then]),
         ("cobs code beyond the end", 3, b"\x20" + good[1:] + after, ["corrupt", then]),
@@ -152,9 +152,9 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
 def sentence_cases() -> list[tuple[str, str]]:
     """(name, text between `$` and `*`) of every case; the tests of both twins know the values behind them."""
     return [
-        ("hello of tile 7", "HELLO,2,7,BEEF,3,2,2000,30,0A,00C0FFEE,128"),
-        ("tile before its first update", "TILE,0,0,0,,----,C08080"),
-        ("tile after its first update", "TILE,255,4294967295,1,4,N-S-,C08A6C"),
+        ("hello of tile 7", "HELLO,3,7,BEEF,3,2,2000,30,0A,00C0FFEE,128"),
+        ("tile before its first update", "TILE,0,0,0,,,,----,C08080"),
+        ("tile after its first update", "TILE,255,4294967295,1,4,0,30,N-S-,C08A6C"),
         ("link that never heard a frame", "LINK,7,5,W,0,0,0,0,0,,0,,"),
         ("link with a corrupt frame", "LINK,7,300,E,1,3,1,0,0,210,12,200,W"),
         ("time", "TIME,7,1000,14200,163,2048,5000,3"),

@@ -128,7 +128,9 @@ def replay(tmp_path: Path) -> Iterator[Replay]:
     with path.open("w") as file:
         file.write(format_event(PortNews(1000.0, "p", is_open=True)))
         for second in range(100):
-            tile = TileSentence(1, 1000 * second, second, str(second // 10), "----", bytes(21))
+            tile = TileSentence(
+                1, 1000 * second, second, str(second // 10), second // 10, 30, "----", bytes(21)
+            )
             file.write(format_event(Heard(1000.0 + second, "p", format_sentence(tile).strip(), tile)))
     with Replay(path) as replay:
         replay.read_until("0 s, x 0.001; space: pause")

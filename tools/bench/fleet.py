@@ -43,7 +43,7 @@ def sentence(tile: int, number: int, rate: float, count: int) -> bytes:
     if number % 2 == 0:
         links = "".join("-" if other is None else side for side, other in beside.items())
         label = str(number // 200 % 10)
-        return format_sentence(TileSentence(tile, uptime_ms, number, label, links, STATE))
+        return format_sentence(TileSentence(tile, uptime_ms, number, label, int(label), 30, links, STATE))
     if number % 20 == 1:
         return format_sentence(TimeSentence(tile, uptime_ms, 9000, 700, number, 3000, 0))
     side = "NESW"[number // 2 % 4]

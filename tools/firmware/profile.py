@@ -46,16 +46,25 @@ INTERRUPTS = {
 }  # fmt: skip
 
 # The functions of firmware/src/avr/kernel.S.
-KERNEL = ("tilenca_passes", "tilenca_sum")
+KERNEL = ("tilenca_blocks", "tilenca_sum")
 
 NETWORK, LOOP = "the network", "main loop, display, button, clock"
 # What a source file's instructions are for; what is in none of these is the main loop.
 PARTS = {
-    NETWORK: ("arithmetic", "network", "cell", "flash", "layer", "model"),
+    NETWORK: ("arithmetic", "network", "cell", "flash", "layer", "layers", "model"),
     "frames: COBS, CRC, counters": ("frame", "link", "crc16"),
     "links: queues": ("usart", "ring", "links"),
     "south: edges to bytes, bytes to toggles": ("south_uart", "edge_receiver", "toggles"),
-    "telemetry, commands, timing": ("telemetry", "sentence", "command", "host", "settings", "timing", "boot"),
+    "telemetry, commands, timing": (
+        "telemetry",
+        "sentence",
+        "command",
+        "host",
+        "settings",
+        "settings_store",
+        "timing",
+        "boot",
+    ),
 }
 ASLEEP, INTERRUPTED = "asleep", "interrupts"
 

@@ -14,23 +14,30 @@ LEVELS = {
     "demo": "build the firmware and run it on emulated tiles",
     "train": "the same, and train models",
     "test": "the same, and run the tests",
-    "check": "the same, and check format, lint, types and budgets",
+    "docs": "as demo, and build the documentation site",
+    "check": "as test and docs, and check format, lint, types and budgets",
 }
+# The levels that each one includes.
+INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["demo"], "check": ["test", "docs"]}
 # Debian packages beyond those of setup.sh. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"]}
 
 
+def levels_up_to(level: str) -> list[str]:
+    """The level and all that it includes, the smallest first."""
+    below = [lower for included in INCLUDED.get(level, []) for lower in levels_up_to(included)]
+    return list(dict.fromkeys([*below, level]))
+
+
 def main() -> int:
     """Brings the clone up to the level asked for; returns the exit status."""
-    levels = list(LEVELS)
     parser = argparse.ArgumentParser(
         prog="setup",
         description="Makes this clone ready to use.",
         epilog="Levels: " + "; ".join(f"{name}: {purpose}" for name, purpose in LEVELS.items()) + ".",
     )
-    parser.add_argument("level", nargs="?", choices=levels, default="demo")
-    level = parser.parse_args().level
-    reached = levels[: levels.index(level) + 1]
+    parser.add_argument("level", nargs="?", choices=list(LEVELS), default="demo")
+    reached = levels_up_to(parser.parse_args().level)
     try:
         native.install_system_packages([name for step in reached for name in SYSTEM_PACKAGES.get(step, [])])
         python.make_environment(reached)

@@ -15,7 +15,7 @@ CONSTRAINTS = ROOT / "constraints.txt"
 PYPROJECT = ROOT / "pyproject.toml"
 
 # What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
-EXTRAS = {"demo": "firmware", "train": "train", "test": "test", "check": "check"}
+EXTRAS = {"demo": "firmware", "train": "train", "test": "test", "check": "check", "docs": "docs"}
 
 
 def pinned_version(package: str) -> str:

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|check]
+# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|docs|check]
 #
 # This part finds or installs what must be there before Python is; tools/setup/__main__.py does the rest.
 set -eu

@@ -9,8 +9,8 @@
 namespace tilenca {
 
 Cells::Cells(const PackedNetwork& network, uint8_t classes, int count, int16_t* states)
-    : network_(network), classes_(classes), stride_(kTaps * network.channels), inputs_(count * stride_),
-      states_(states) {
+    : network_(network), classes_(classes), stride_(kNeighbourhood * network.channels),
+      inputs_(count * stride_), states_(states) {
     for (int cell = 0; cell < count; ++cell) {
         tell(cell);
     }

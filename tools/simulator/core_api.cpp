@@ -48,7 +48,7 @@ struct TilencaRound {
 namespace {
 
 tilenca::PackedNetwork packed(const TilencaModel& m) {
-    const uint8_t wide = tilenca::kTaps * m.channels;
+    const uint8_t wide = tilenca::kNeighbourhood * m.channels;
     return {m.channels,
             {wide, m.hidden1, m.w1, m.b1},
             {m.hidden1, m.hidden2, m.w2, m.b2},
@@ -56,7 +56,7 @@ tilenca::PackedNetwork packed(const TilencaModel& m) {
 }
 
 void update_as_the_chip_does(const TilencaModel& m, int16_t* states, const int8_t* inputs, size_t count) {
-    const uint8_t wide = tilenca::kTaps * m.channels;
+    const uint8_t wide = tilenca::kNeighbourhood * m.channels;
     const tilenca::LayerStream hidden1(wide, m.hidden1, m.w1, m.b1);
     const tilenca::LayerStream hidden2(m.hidden1, m.hidden2, m.w2, m.b2);
     const tilenca::LayerStream output(m.hidden2, m.channels, m.w3, m.b3);
@@ -105,7 +105,7 @@ TILENCA_API int32_t tilenca_update_cells(const TilencaModel* model, int16_t* sta
         update_as_the_chip_does(*model, states, inputs, count);
         return 1;
     }
-    const size_t wide = tilenca::kTaps * model->channels;
+    const size_t wide = tilenca::kNeighbourhood * model->channels;
     std::vector<tilenca::CellUpdate> updates(count);
     for (size_t i = 0; i < count; ++i) {
         updates[i] = {inputs + i * wide, states + i * model->channels, 0};

@@ -14,21 +14,21 @@ class LayerStream {
     // Weights row-major [output][input].
     LayerStream(uint8_t inputs, uint8_t outputs, const int8_t* weights, const int16_t* biases)
         : inputs_(inputs), outputs_(outputs) {
-        for (int from = 0; from < outputs; from += kPassOutputs) {
-            bytes_.insert(bytes_.end(), Layer::kPassHead, 0);
+        for (int from = 0; from < outputs; from += kBlockOutputs) {
+            bytes_.insert(bytes_.end(), Layer::kBlockHead, 0);
             for (int i = 0; i < inputs; ++i) {
-                for (int j = from; j < from + kPassOutputs; ++j) {
+                for (int j = from; j < from + kBlockOutputs; ++j) {
                     bytes_.push_back(static_cast<uint8_t>((j < outputs ? weights[j * inputs + i] : 0) + 128));
                 }
             }
         }
-        for (int j = 0; j < (outputs + kPassOutputs - 1) / kPassOutputs * kPassOutputs; ++j) {
+        for (int j = 0; j < (outputs + kBlockOutputs - 1) / kBlockOutputs * kBlockOutputs; ++j) {
             set_bias(static_cast<uint8_t>(j), j < outputs ? biases[j] : 0);
         }
     }
 
     void set_bias(uint8_t output, int16_t bias) {
-        const int low = layer().start_of(output) + 1 + output % kPassOutputs * 2;
+        const int low = layer().start_of(output) + 1 + output % kBlockOutputs * 2;
         bytes_[low] = static_cast<uint8_t>(bias);
         bytes_[low + 1] = static_cast<uint8_t>(bias >> 8 ^ 0x80);
     }

@@ -65,7 +65,7 @@ class Block {
     void update(const CellUpdate* updates, int count) {
         const int channels = network_.channels;
         for (int lane = 0; lane < count; ++lane) {
-            copy(messages_[lane], updates[lane].inputs, kTaps * channels);
+            copy(messages_[lane], updates[lane].inputs, kNeighbourhood * channels);
             for (int side = 0; updates[lane].absent >> side; ++side) {
                 if (updates[lane].absent >> side & 1) {
                     memset(messages_[lane] + (1 + side) * channels, 0, channels);
@@ -87,7 +87,7 @@ class Block {
     static const Floats* rows_of(const typename L::Outputs* outputs) { return outputs->row; }
 
     void read_columns() {
-        for (int from = 0; from < kTaps * network_.channels; from += kBytes) {
+        for (int from = 0; from < kNeighbourhood * network_.channels; from += kBytes) {
             Bytes v[W];
 #pragma GCC unroll 16
             for (int lane = 0; lane < W; ++lane) {

@@ -1,4 +1,4 @@
-// What a person is to see of a tile: digit and colour, and one debug LED per side.
+// What a person sees of a tile: digit and colour, and one debug LED per side.
 #pragma once
 
 #include <stdint.h>
@@ -8,17 +8,17 @@
 namespace tilenca {
 
 struct Appearance {
-    uint8_t shown; // a class, Tile::kNothing: dark, or kFound
+    uint8_t shown; // a class, kFound, or Tile::kNothing, which is dark
     uint8_t leds;  // one bit per side, in the order N E S W
 
     static constexpr uint8_t kFound = 0xFE;
 };
 
-// A side's LED is lit while its neighbour is alive and blinks while it runs another model. `blinking`: a
-// white 8 blinks instead of the class.
+// A side's LED is lit while its neighbour is alive, and blinks while the neighbour runs another model. With
+// `blinking`, a white 8 blinks instead of the class.
 Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms);
 
-// How that looks, at the tile's brightness.
+// The look of `shown` at the tile's brightness.
 Look look_of(const Tile& tile, uint8_t shown);
 
 } // namespace tilenca

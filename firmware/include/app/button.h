@@ -1,4 +1,4 @@
-// A push button without its bouncing.
+// A debounced push button.
 #pragma once
 
 #include <stdint.h>
@@ -7,25 +7,25 @@ namespace tilenca {
 
 class Button {
   public:
-    static constexpr uint8_t kSettleMs = 20;
+    static constexpr uint8_t kDebounceMs = 20;
 
-    // Takes the contact as it is now. True once per press, when it has been closed for kSettleMs; it must
-    // have been open as long before it counts again.
+    // Takes the contact's present state. True once per press, when the contact has been closed for
+    // kDebounceMs. It must be open for as long before the next press counts.
     bool pressed(bool closed, uint32_t now_ms) {
-        if (closed == settled_) {
+        if (closed == stable_) {
             changed_ms_ = now_ms;
         }
-        if (now_ms - changed_ms_ < kSettleMs) {
+        if (now_ms - changed_ms_ < kDebounceMs) {
             return false;
         }
-        settled_ = closed;
+        stable_ = closed;
         changed_ms_ = now_ms;
-        return settled_;
+        return stable_;
     }
 
   private:
-    bool settled_ = false;
-    uint32_t changed_ms_ = 0; // since when the contact differs from `settled_`
+    bool stable_ = false;
+    uint32_t changed_ms_ = 0; // since when the contact differs from `stable_`
 };
 
 } // namespace tilenca

@@ -1,4 +1,4 @@
-// What the host says to a tile, one byte at a time: docs/PROTOCOL.md section 6. Pure bytes, no port.
+// Reads the host's commands from single bytes: docs/PROTOCOL.md section 6. It owns no port.
 #pragma once
 
 #include <stdint.h>
@@ -7,17 +7,17 @@ namespace tilenca {
 
 constexpr uint8_t kMaxCommand = 64;
 
-// Finds sentences among any bytes, checks them, and cuts them into fields.
+// Finds sentences in a stream of bytes, checks them, and splits them into fields.
 class CommandReader {
   public:
     enum class Result : uint8_t { Pending, Ready, Damaged, TooLong };
 
-    // Takes the next byte. What lies between sentences is skipped; a damaged or overlong one is told once,
-    // and the next `$` begins anew.
+    // Takes the next byte. Bytes between sentences are skipped. A damaged or overlong sentence is reported
+    // once, and the next `$` begins a new one.
     Result feed(uint8_t byte);
 
-    // Of the command that was Ready; valid until the next feed(). Field 0 is its name, and those that it does
-    // not have are empty.
+    // The command that was Ready, valid until the next feed(). Field 0 is its name; a field that it does not
+    // have is empty.
     uint8_t fields() const { return fields_; }
     const char* field(uint8_t index) const;
 
@@ -31,11 +31,11 @@ class CommandReader {
     Stage stage_ = Stage::Outside;
     uint8_t size_ = 0;
     uint8_t fields_ = 0;
-    uint8_t checksum_ = 0; // of the body so far, then less the digits: right if nothing is left
+    uint8_t checksum_ = 0; // XOR of the body and of the digits so far; 0 at the end of a good sentence
     char bytes_[kMaxCommand - kAroundBody + 1] = {};
 };
 
-// The number that a field is; false if it is none or greater than `most`.
+// Reads a field as a number. False if it is not one, or greater than `most`.
 bool number_of(const char* field, uint16_t most, uint16_t* number);
 
 } // namespace tilenca

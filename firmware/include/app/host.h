@@ -1,4 +1,4 @@
-// Does what the host's commands ask for, and answers each: docs/PROTOCOL.md section 6.
+// Carries out the host's commands and answers each: docs/PROTOCOL.md section 6.
 #pragma once
 
 #include <stdint.h>
@@ -14,30 +14,27 @@ constexpr uint8_t kMaxBlinkS = 60;
 
 class Host {
   public:
-    // Answer: `sentence` is to be said. Store: block() is to be written into EEPROM, then stored() called;
-    // until then no more bytes may come.
-    enum class Result : uint8_t { Nothing, Answer, Store };
-
-    // `defaults` is what `preset default` brings back; it must outlive this.
+    // `preset default` restores `defaults`. Both must outlive this.
     Host(const Settings& defaults, const Boot& boot) : defaults_(defaults), boot_(boot) {}
 
-    // Takes the next byte from the host.
-    Result receive(uint8_t byte, Tile* tile, uint32_t now_ms, Sentence* sentence);
+    // Takes bytes from the host until one of them completes a command or none is left. `read(&byte)` gives
+    // the next one, or false. True if `sentence` is now the answer.
+    //
+    // `store` is a SettingsStore; call this only while it is not writing(). A later call gives the answer to
+    // settings that went there.
+    template <class Store, class Read>
+    bool answer(Store& store, Read read, Tile* tile, uint32_t now_ms, Sentence* sentence);
 
-    // The settings that are to be kept, as they lie in EEPROM.
-    const uint8_t (&block() const)[kSettingsSize] { return block_; }
-
-    // What EEPROM holds twice after the attempt; `sentence` is the answer. If both are the block, it is in
-    // force. Else false: block() is now that of the settings in force, to be written back.
-    bool stored(const uint8_t (&first)[kSettingsSize], const uint8_t (&second)[kSettingsSize], Tile* tile,
-                Sentence* sentence);
-
-    // Whether the face is to blink, so that a person finds the tile.
+    // Whether the display is to blink, so that a person finds the tile.
     bool blinking(uint32_t now_ms);
 
   private:
+    enum class Result : uint8_t { Nothing, Answer, Store };
+
+    Result receive(uint8_t byte, Tile* tile, uint32_t now_ms, Sentence* sentence);
     Result obey(Tile* tile, uint32_t now_ms, Sentence* sentence);
     Result begin_set(const Tile& tile, Sentence* sentence);
+    void end_set(bool stored, Tile* tile, Sentence* sentence);
     bool change(Settings* settings) const;
     void begin_ack(const Tile& tile, Sentence* sentence) const;
     void write_nak(const Tile& tile, const char* reason, const char* name, Sentence* sentence) const;
@@ -45,9 +42,35 @@ class Host {
     const Settings& defaults_;
     const Boot& boot_;
     CommandReader reader_;
-    uint8_t block_[kSettingsSize] = {};
+    Settings wanted_ = {}; // by the last command
+    bool storing_ = false; // they are being written, and the answer is due
     bool blinking_ = false;
     uint32_t blink_until_ms_ = 0;
 };
+
+template <class Store, class Read>
+bool Host::answer(Store& store, Read read, Tile* tile, uint32_t now_ms, Sentence* sentence) {
+    if (storing_) {
+        storing_ = false;
+        const bool stored = store.verify();
+        if (!stored) {
+            store.write(tile->settings()); // back
+        }
+        end_set(stored, tile, sentence);
+        return true;
+    }
+    for (uint8_t byte; read(&byte);) {
+        const Result result = receive(byte, tile, now_ms, sentence);
+        if (result == Result::Store) {
+            store.write(wanted_);
+            storing_ = true;
+            return false;
+        }
+        if (result == Result::Answer) {
+            return true;
+        }
+    }
+    return false;
+}
 
 } // namespace tilenca

@@ -9,7 +9,7 @@ constexpr uint8_t kMaxSentence = 200;
 
 class Sentence {
   public:
-    // Starts anew with this name.
+    // Starts a new sentence.
     void begin(const char* name);
 
     // Each appends one field.
@@ -23,7 +23,7 @@ class Sentence {
     void more_hex(uint32_t value, uint8_t digits = 2);
     void more(const char* characters);
 
-    // Appends checksum and line end: the sentence is whole.
+    // Appends checksum and line end, which completes the sentence.
     void end();
 
     const char* bytes() const { return bytes_; }

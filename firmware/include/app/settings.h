@@ -1,4 +1,4 @@
-// What a tile can be told once and keeps in EEPROM: docs/PROTOCOL.md section 5. Pure bytes, no EEPROM here.
+// The settings that a tile keeps in EEPROM, and the bytes that they are there: docs/PROTOCOL.md section 5.
 #pragma once
 
 #include <stdint.h>
@@ -14,17 +14,17 @@ constexpr uint16_t kMinPeriodMs = 10;
 struct Settings {
     uint8_t tile_id;    // 0: not set
     uint16_t period_ms; // from update to update
-    uint16_t updates;   // then stop; 0: for ever
+    uint16_t updates;   // after these the tile stops; 0: never
     uint8_t brightness; // of digit and colour, of 255
 };
 
-// Reads a block as it lies in EEPROM. False, and `settings` as it was, if anything about it is not right.
+// Reads a block from EEPROM. If anything in it is wrong, returns false and leaves `settings` unchanged.
 bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings);
 
 // Writes the block that parse_settings() reads.
 void write_settings(const Settings& settings, uint8_t (&block)[kSettingsSize]);
 
-// Whether nobody has ever written there: then the defaults are no error.
+// Whether the block was never written. Then the defaults hold without an error.
 bool is_blank(const uint8_t (&block)[kSettingsSize]);
 
 } // namespace tilenca

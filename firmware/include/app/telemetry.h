@@ -1,4 +1,4 @@
-// What a tile tells the host, and when: docs/PROTOCOL.md section 3.
+// What a tile reports to the host, and when: docs/PROTOCOL.md section 3.
 #pragma once
 
 #include <stdint.h>
@@ -8,13 +8,13 @@
 
 namespace tilenca {
 
-// What a tile knows of its start.
+// How the tile was started, and its program.
 struct Boot {
-    uint8_t reset_cause; // MCUSR, as far as known
+    uint8_t reset_cause; // MCUSR, or what the marks in SRAM say
     uint32_t firmware_id;
 };
 
-// What only the board and the main loop know of a tile's health.
+// The health of a tile, as the board and the main loop measure it.
 struct Health {
     uint32_t compute_us;
     uint32_t gap_us;
@@ -33,10 +33,10 @@ void write_link(const Tile& tile, Side side, uint16_t overruns, uint32_t now_ms,
 void write_time(const Tile& tile, const Health& health, uint32_t dropped, uint32_t now_ms,
                 Sentence* sentence);
 
-// `place`: the byte address in flash where the program hung, 0 if not known; only for Error::Watchdog.
+// `place` is for Error::Watchdog only: the byte address in flash where the program hung, 0 if not known.
 void write_error(const Tile& tile, Error error, uint32_t place, uint32_t now_ms, Sentence* sentence);
 
-// Decides which sentence comes next, and lets the host read at its own pace.
+// Decides which sentence comes next. The host may read at its own pace.
 class Telemetry {
   public:
     static constexpr uint8_t kTilePeriodMs = 100;
@@ -45,32 +45,33 @@ class Telemetry {
     // Call it when a period of the tile has ended.
     void period_ended(const Tile& tile);
 
-    // Something is wrong; said once, however often this is called.
+    // Reports an error, only once however often this is called.
     void failed(Error error, uint32_t place = 0);
 
-    // Counts a sentence that could not be said. One that waits when its successor is due counts by itself.
+    // Counts a sentence that could not be sent. One that still waits when its successor is due is counted
+    // without this.
     void drop() { ++dropped_; }
 
     enum class Next : uint8_t { Nothing, Error, Tile, Link, Time };
 
-    // What is due; Nothing if that is so.
+    // The kind of sentence that is due.
     Next next(uint32_t now_ms) const;
 
-    // Writes what next() says; true if it was the report of the health, whose count then begins anew.
+    // Writes the sentence that next() names. True if it was TIME: then the measurements of health start anew.
     bool write(const Tile& tile, const Health& health, uint32_t now_ms, Sentence* sentence);
 
   private:
     static uint8_t mask_of(Error error) { return static_cast<uint8_t>(1 << static_cast<uint8_t>(error)); }
     Error first_error() const;
 
-    uint32_t last_ms_ = 0;      // end of the period that was last reported
-    uint32_t last_time_ms_ = 0; // of the last TIME
+    uint32_t last_ms_ = 0;      // end of the period that was reported last
+    uint32_t last_time_ms_ = 0; // when the last TIME was due
     uint32_t dropped_ = 0;
     uint32_t hung_at_ = 0;
     uint8_t last_shown_ = Tile::kNothing;
     uint8_t next_side_ = 0;
     uint8_t errors_due_ = 0;  // one bit per Error
-    uint8_t errors_told_ = 0; // the same
+    uint8_t errors_told_ = 0; // one bit per Error
     bool any_yet_ = false;
     bool tile_due_ = false;
     bool link_due_ = false;

@@ -1,7 +1,8 @@
-// A whole tile without its hardware: bytes and milliseconds come in, frames and what to show go out.
+// A whole tile without its hardware. Its inputs are bytes and the time, its outputs frames and the class to
+// show.
 //
-// Everything happens inside the calls below, so that any number of tiles live in one process and a test owns
-// the clock.
+// Everything happens inside the calls below, so that one process can have any number of tiles, and a test can
+// set the clock.
 #pragma once
 
 #include <stdint.h>
@@ -18,34 +19,36 @@ class Tile {
   public:
     static constexpr uint8_t kNothing = 0xFF;
 
-    // Boots: the cell is the seed, says so on all sides, and updates first one period from now. The model
+    // Starts as the seed, with a frame for every side. The first update is one period from now. The model
     // must outlive the tile.
     Tile(const Model& model, const Settings& settings, uint32_t now_ms);
 
-    // Starts the classification anew from the seed. The links and the phase of the updates stay.
+    // Starts again from the seed. The links and the phase of the updates stay.
     void restart();
 
-    // Other settings from now on; the state, the links and the updates done stay. A new period counts from
-    // the end of the last one.
+    // Changes the settings. The state, the links and the number of updates stay. A new period counts from the
+    // end of the last one.
     void apply(const Settings& settings);
 
     // Takes the next byte from the line on this side.
     void receive(Side side, uint8_t byte, uint32_t now_ms);
 
-    // Does at most one slice of work, about a millisecond on the chip. True when this ended a period: the
-    // tile has new frames for its neighbours, after an update or, once stopped, without one.
+    // Does at most one slice of work, which takes about a millisecond on the chip. True when this ended a
+    // period: the tile has new frames for its neighbours, after an update or, once it has stopped, without
+    // one.
     bool tick(uint32_t now_ms);
 
-    // Whether an update is under way: tick again soon.
+    // Whether an update is under way. Then call tick() again soon.
     bool busy() const { return cell_.updating(); }
 
-    // Whether there is a frame for this side that was not taken yet, and takes it (at most kMaxFrame bytes).
-    // What is not taken in time is replaced by the next state: the latest value wins.
+    // Whether there is a frame for this side, and takes it, at most kMaxFrame bytes. The next state replaces
+    // a frame that was not taken.
     bool has_frame(Side side) const { return untold_ & mask_of(side); }
     uint8_t take_frame(Side side, uint8_t* wire);
 
-    // The class to show, or kNothing before the first update.
-    uint8_t shown() const { return shown_; }
+    // The class to show, or kNothing before the first update, and how sure it is, as Decision says.
+    uint8_t shown() const { return decided_.best; }
+    uint8_t margin() const { return decided_.margin; }
 
     uint32_t updates() const { return updates_; }
     const Link& link(Side side) const { return links_[index_of(side)]; }
@@ -53,7 +56,7 @@ class Tile {
     const Model& model() const { return model_; }
     const Settings& settings() const { return settings_; }
 
-    // When the last period ended by the tile's schedule, which a late tick() does not move.
+    // When the last period was due to end. A late tick() does not move it.
     uint32_t period_ended_ms() const { return due_ms_ - settings_.period_ms; }
 
   private:
@@ -70,8 +73,8 @@ class Tile {
     Link links_[kSides];
     uint32_t due_ms_; // end of the current period
     uint32_t updates_ = 0;
-    uint8_t shown_ = kNothing;
-    uint8_t untold_ = 0; // one bit per side that has not got the current state
+    Decision decided_ = {kNothing, Decision::kNoMargin};
+    uint8_t untold_ = 0; // one bit per side that has not taken the current state
 };
 
 } // namespace tilenca

@@ -1,6 +1,6 @@
-// Where a tile's time goes, from one report to the next.
+// How a tile spends its time, from one report to the next.
 //
-// Short times are differences of stamps: half microseconds, modulo 2^16, which are cheap to take.
+// Short times are differences of stamps, which are half microseconds modulo 2^16 and cheap to read.
 #pragma once
 
 #include <stdint.h>
@@ -24,7 +24,7 @@ class Timing {
         }
     }
 
-    // Of a slice of an update; `last`: the update is done.
+    // Adds the time of a slice of an update; `last`: this completed the update.
     void computed(uint16_t halves, bool last) {
         update_ += halves;
         if (last) {
@@ -35,7 +35,7 @@ class Timing {
 
     void slept(uint16_t halves) { slept_ += halves; }
 
-    // Since the last reported(): the longest update and turn, and the share of time not asleep.
+    // Since the last reported(): the longest update, the longest turn, and the share of time awake.
     uint32_t compute_us() const { return compute_ / 2; }
     uint32_t gap_us() const { return gap_ / 2; }
     uint16_t awake_permille() const {
@@ -44,7 +44,7 @@ class Timing {
         return asleep > 1000 ? 0 : static_cast<uint16_t>(1000 - asleep);
     }
 
-    // Begins anew.
+    // Starts the measurements anew.
     void reported() {
         compute_ = gap_ = slept_ = 0;
         reported_ms_ = turn_ms_;

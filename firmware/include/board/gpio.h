@@ -1,4 +1,4 @@
-// Digital pins by the pin map's port letter and bit.
+// Digital pins, by port letter and bit of the pin map.
 #pragma once
 
 #include <stdint.h>
@@ -8,8 +8,7 @@
 namespace tilenca {
 namespace board {
 
-// Data-space address of a port's PIN register; DDR is the next, PORT the one after (datasheet, register
-// summary).
+// Data-space address of a port's PIN register. DDR and PORT follow it (datasheet, register summary).
 constexpr uint16_t pin_register(char port) {
     return port <= 'G' ? 0x20 + 3 * (port - 'A') : 0x100 + 3 * (port - (port > 'I' ? 'I' : 'H'));
 }
@@ -40,19 +39,19 @@ inline bool is_high(Pin pin) {
     return pin_of(pin) & mask_of(pin);
 }
 
-// Writing a 1 to the PIN register toggles one bit and leaves the others to the interrupts that may own them.
+// Writing a 1 to the PIN register toggles one bit. The others may belong to interrupts and stay untouched.
 inline void set(Pin pin, bool high) {
     if (static_cast<bool>(port_of(pin) & mask_of(pin)) != high) {
         pin_of(pin) = mask_of(pin);
     }
 }
 
-// Only before interrupts that use the same port are on.
+// Call it before any interrupt that uses the same port is on: it reads, changes and writes the whole port.
 inline void make_output(Pin pin) {
     ddr_of(pin) |= mask_of(pin);
 }
 
-// A line that nobody drives then rests high instead of picking up noise.
+// Keeps a line without a driver high, so that it picks up no noise. Call it before those interrupts, too.
 inline void pull_up(Pin pin) {
     port_of(pin) |= mask_of(pin);
 }

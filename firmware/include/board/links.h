@@ -1,4 +1,4 @@
-// The lines to the four neighbours, by side: which of them is a hardware UART is nobody else's business.
+// The lines to the four neighbours, by side. This hides which of them is a hardware UART.
 #pragma once
 
 #include <stdint.h>
@@ -8,13 +8,17 @@
 namespace tilenca {
 namespace board {
 
-// Between south and north, and between east and west. The second is 16 MHz / 128, exactly.
+// Between south and north, and between east and west. The second rate is exactly 16 MHz / 128.
 constexpr uint32_t kLinkBaud = 38400;
 constexpr uint32_t kRowBaud = 125000;
 
+// Take all bytes of every side at least this often, or some are lost. The main loop does so every two
+// milliseconds.
+constexpr uint16_t kReadEveryUs = 5000;
+
 void links_begin();
 
-// The next byte from this side, if any. Ask every side at least every six milliseconds.
+// The next byte from this side, if any.
 bool link_read(Side side, uint8_t* byte);
 
 // Whether the line is free for the next frame.
@@ -23,8 +27,8 @@ bool link_idle(Side side);
 // Starts sending a frame of at most kMaxFrame bytes; only when link_idle().
 void link_write(Side side, const uint8_t* bytes, uint8_t size);
 
-// How many bytes, or on the south side how many batches of edges, were lost for want of room or to noise;
-// stops at 65,535.
+// How many bytes were lost for want of room; on the south side, how often edges were lost for want of room or
+// to noise. Stops at 65,535.
 uint16_t link_overruns(Side side);
 
 } // namespace board

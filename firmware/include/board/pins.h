@@ -1,7 +1,7 @@
-// The one pin map of the tile: facts of the authors' board (Project Cube PCB v1.0, docs/HARDWARE.md).
+// The only pin map of the tile, for the authors' board (Project Cube PCB v1.0, docs/HARDWARE.md).
 //
-// Pure data, so that the emulator's tile is wired from the same table as the firmware. AVR port letter and
-// bit; the Arduino pin number stands beside each.
+// It is only data, so that the emulator's tile is wired by the same table. Pins have AVR port letter and bit;
+// the Arduino numbers are in the comments.
 #pragma once
 
 #include <stdint.h>
@@ -36,7 +36,7 @@ constexpr Pin kSouthTx = {'K', 7};
 constexpr uint8_t kSideUsart[4] = {2, 1, 0, 3};
 constexpr uint8_t kHostUsart = 0;
 
-// The receiving pin of each side, which floats while nobody is there: RXD2, RXD1, A14, RXD3.
+// The receiving pin of each side, which floats while there is no neighbour: RXD2, RXD1, A14, RXD3.
 constexpr Pin kSideRx[4] = {{'H', 0}, {'D', 2}, kSouthRx, {'J', 0}};
 
 // The sending pin of each side: TXD2, TXD1, A15, TXD3.

@@ -1,4 +1,4 @@
-// Queues of bytes between an interrupt and the main loop: one side only puts, the other only takes.
+// Queues of bytes between an interrupt and the main loop. One of them only puts, the other one only takes.
 #pragma once
 
 #include <stdint.h>
@@ -6,17 +6,17 @@
 namespace tilenca {
 namespace board {
 
-// Memory for queues. Its address is a multiple of 256, so that an index is the low byte of a pointer: an
-// interrupt then needs no arithmetic, and no arithmetic needs no flags saved.
+// Memory for queues. Its address is a multiple of 256, so that an index is the low byte of a pointer. An
+// interrupt then needs no arithmetic and does not have to save the flags.
 struct Page {
     volatile uint8_t bytes[256];
 } __attribute__((aligned(256)));
 
-// Pages lie side by side: between other variables each would leave a gap before it.
+// Keeps pages together, since between other variables each page would have a gap before it.
 #define TILENCA_PAGE __attribute__((section(".bss.pages")))
 
-// One queue of kSize - 1 bytes at most in a page that it shares with 256 / kSize - 1 others. Indices are
-// single bytes and therefore never half-written when an interrupt looks.
+// A queue of at most kSize - 1 bytes, one of 256 / kSize in its page. An index is a single byte, so an
+// interrupt never sees a half-written one.
 template <uint16_t kSize>
 struct Ring {
     static_assert(kSize <= 256 && (kSize & (kSize - 1)) == 0, "indices wrap by masking");
@@ -25,7 +25,7 @@ struct Ring {
     // The index after this one, in the same part of the page.
     static uint8_t after(uint8_t at) { return static_cast<uint8_t>((at & ~kWrap) | ((at + 1) & kWrap)); }
 
-    // Empties the queue, whose bytes begin there in the page. Only while its interrupt is off.
+    // Empties the queue, whose bytes begin at `first` in the page. Only while its interrupt is off.
     void begin(uint8_t first) { head = tail = first; }
 
     bool empty() const { return head == tail; }
@@ -47,7 +47,7 @@ struct Ring {
         return byte;
     }
 
-    // Plain members, since interrupts in assembly work on them too.
+    // Public, since interrupts in assembly use them.
     volatile uint8_t head = 0; // where the next byte goes
     volatile uint8_t tail = 0; // the oldest byte
 };

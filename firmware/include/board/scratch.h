@@ -1,7 +1,7 @@
-// Bytes that `in` and `out` reach in one cycle, for the interrupts of the links.
+// Bytes that `in` and `out` reach in one cycle, for the interrupts of the links. Read by the assembler too.
 //
 // Interrupts here never nest, so one place each keeps what an interrupt saves: half the cycles of a stack.
-// GPIOR0..2 are made for such use; timer 0 stands still, and its registers then only store.
+// GPIOR0..2 are made for such use. Timer 0 is stopped, and its registers then only store.
 #pragma once
 
 #include <avr/io.h>
@@ -11,15 +11,17 @@
 #define SCRATCH_R30 OCR0B // or the status register, where r30 is not needed
 #define SCRATCH_R31 TCNT0
 
-// The south link's own: docs beside their use in south_uart.cpp.
+// Used by the south link only; south_layout.h describes them.
 #define SOUTH_TOGGLES GPIOR0
 #define SOUTH_EDGE_TAIL GPIOR1
 #define SOUTH_EDGE_HEAD GPIOR2
 
+#ifndef __ASSEMBLER__
+
 namespace tilenca {
 namespace board {
 
-// Stops timer 0, and with it Arduino's millis(): in this mode a write to OCR0A or OCR0B is there at once.
+// Stops timer 0, and with it Arduino's millis(): in this mode a write to OCR0A or OCR0B takes effect at once.
 inline void scratch_begin() {
     TIMSK0 = 0;
     TCCR0A = 0;
@@ -28,3 +30,5 @@ inline void scratch_begin() {
 
 } // namespace board
 } // namespace tilenca
+
+#endif

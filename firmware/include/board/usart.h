@@ -1,5 +1,5 @@
-// The four hardware UARTs, by number. Short interrupts of our own instead of Arduino's Serial objects:
-// whatever runs while the south link's line changes makes that edge's time stamp late.
+// The four hardware UARTs, by number. They have short interrupts of their own instead of Arduino's Serial
+// objects, since an interrupt that runs while the south line changes makes that edge's time stamp late.
 #pragma once
 
 #include <stdint.h>
@@ -19,11 +19,11 @@ bool usart_write(uint8_t number, const uint8_t* bytes, uint8_t size);
 // How many bytes can be queued now.
 uint8_t usart_room(uint8_t number);
 
-// Whether nothing is queued; up to two bytes may still be leaving.
+// Whether the queue is empty. Up to two bytes may still be on their way out.
 bool usart_idle(uint8_t number);
 
-// How many bytes were lost because those before them were not read in time; said a little late. Stops at
-// 65,535.
+// How many bytes were lost because earlier ones were not read in time. A loss may be counted a little late.
+// Stops at 65,535.
 uint16_t usart_overruns(uint8_t number);
 
 } // namespace board

@@ -1,7 +1,8 @@
-// Finds out what is at the other end of a side, and whether the lines to it are whole. Owns no port.
+// Finds out what is connected to a side, and whether the lines to it are whole. It owns no port.
 //
-// Each side sends small packets that name it. What comes back with the own side's name went through a
-// loop-back plug; with the opposite side's, it is from the tile there, which also says whether it hears us.
+// Each side sends small packets that name it. A packet that names the own side came back through a loop-back
+// plug. One that names the opposite side is from the neighbour, and says whether the neighbour hears this
+// tile.
 #pragma once
 
 #include <stdint.h>
@@ -14,10 +15,10 @@ enum class Verdict : uint8_t {
     Waiting,    // the first window is not over
     Nothing,    // heard nothing
     Low,        // the line was never high
-    LoopBack,   // heard all that was sent here
-    Neighbour,  // heard a tile that hears us
-    Unheard,    // heard a tile that does not
-    Unreliable, // heard, but not everything
+    LoopBack,   // heard everything that this side sent
+    Neighbour,  // heard a tile that hears this one
+    OneWay,     // heard a tile that does not hear this one
+    Unreliable, // packets were lost
 };
 
 constexpr bool is_good(Verdict verdict) {
@@ -27,7 +28,7 @@ constexpr bool is_good(Verdict verdict) {
 class SideCheck {
   public:
     static constexpr uint8_t kPacketSize = 8;
-    // Send one so often, and judge() so often.
+    // How often to send a packet, and to call judge().
     static constexpr uint8_t kPacketMs = 10;
     static constexpr uint16_t kWindowMs = 500;
 
@@ -39,10 +40,10 @@ class SideCheck {
     // Takes the next byte from the line.
     void receive(uint8_t byte);
 
-    // Takes the line's level now and then.
+    // Takes the line's present level; call it now and then.
     void look(bool high) { was_high_ |= high; }
 
-    // Ends a window, and judges it. True if the verdict is another one than before.
+    // Ends a window and judges it. True if the verdict has changed.
     bool judge();
 
     Verdict verdict() const { return verdict_; }
@@ -59,18 +60,18 @@ class SideCheck {
     uint8_t window_[kPacketSize] = {}; // the last bytes received
     uint8_t sequence_out_ = 0;
     uint8_t sequence_in_ = 0;
-    bool in_sequence_ = false; // whether sequence_in_ says what has to come next
+    bool in_sequence_ = false; // whether the next packet has to follow sequence_in_
 
-    // Of the window under way.
+    // The present window.
     Side from_ = Side::North;
     uint8_t received_ = 0;
     uint8_t missed_ = 0;
     bool heard_us_ = false;
     bool was_high_ = false;
 
-    // Of the last one.
+    // The last window.
     uint8_t lost_ = 0;
-    bool hears_ = false; // whether anything came in it
+    bool hears_ = false; // whether anything came
 };
 
 } // namespace tilenca

@@ -1,17 +1,17 @@
 // The arithmetic of a layer, docs/PROTOCOL.md section 4, written once for the chip and for the host.
 //
-// `Lanes` says in which types it is done, and how many outputs of how many cells go side by side: one of one
-// on the chip (OneCell), many on the host (tools/simulator/lanes.h). It has
+// `Lanes` gives the types, and how many outputs of how many cells are computed side by side: one output of
+// one cell on the chip (OneCell), many on the host (tools/simulator/lanes.h). It has
 //
-//   Outputs                         the values of as many outputs as go side by side, of all cells
-//   State                           the same of stored state values
-//   sum(bias)                       where a sum starts
+//   Outputs                         the outputs that are side by side, of all cells
+//   State                           the same for stored state values
+//   sum(bias)                       the start of a sum
 //   multiply_add(sum, weight, x)    sum += weight * x
 //   whole(sum)                      the sum as integers: they add and shift like an int32_t
 //   clamp(integers, low, high)      each of them within low..high
 //   outputs(integers)               as Outputs, and state(integers) as State
 //
-// and its layers have inputs, row(j), whose next() is the weight of the next input, and bias(j).
+// Its layers have `inputs`, bias(j), and row(j), whose next() is the weight of the next input.
 #pragma once
 
 #include <stdint.h>
@@ -39,7 +39,7 @@ struct OneCell {
     static int16_t state(int16_t value) { return value; }
 };
 
-// 24 bits hold it: 255 products of at most 127 * 127 and a 16-bit bias need 23.
+// 24 bits hold the sum: 255 products of at most 127 * 127 and a 16-bit bias need 23 and the sign.
 template <class Lanes, class Layer, class Inputs>
 auto accumulate(const Layer& layer, uint8_t output, const Inputs* inputs) {
     auto row = layer.row(output);

@@ -13,19 +13,20 @@ class Cell {
     // The network must outlive the cell. The cell starts as the seed.
     explicit Cell(const Network& network);
 
-    // The state every cell starts from: 1.0 in channel 0, else zero. Gives up an update in progress.
+    // Sets the state that every cell starts from: 1.0 in channel 0, zero in the others. Abandons an update in
+    // progress.
     void seed();
 
-    // Takes in the own message and the neighbours' (C values each, nullptr: absent, which reads as zeros),
-    // and begins an update with them. The messages are copied.
+    // Begins an update from the own message and the neighbours', which are copied. Each has C values; nullptr
+    // is an absent neighbour, which reads as zeros.
     void perceive(const int8_t* const (&neighbours)[kSides]);
 
-    // One slice of the update that perceive() began; true when this completed it.
+    // Does one slice of the update. True when this completed it.
     bool update_slice();
 
     bool updating() const { return !forward_.done(); }
 
-    // The message the neighbours read, C values; that of the last completed update while one is in progress.
+    // The message for the neighbours, C values. During an update it is still that of the last completed one.
     const int8_t* message() const { return inputs_; }
 
     // C stored values; half old, half new while an update is in progress.
@@ -33,8 +34,8 @@ class Cell {
 
     uint8_t channels() const { return network_.channels(); }
 
-    // The class with the greatest stored score among the last `classes` channels, the lowest among equals.
-    uint8_t best_class(uint8_t classes) const;
+    // Decides by the stored scores, which are the last `classes` channels.
+    Decision decide(uint8_t classes) const;
 
   private:
     void tell();
@@ -42,7 +43,7 @@ class Cell {
     const Network& network_;
     Forward forward_;
     int16_t state_[kMaxChannels] = {};
-    int8_t inputs_[kMaxInputs + 1] = {}; // the own message lies where the network reads it
+    int8_t inputs_[kMaxInputs + 1] = {}; // of the network; the own message comes first
 };
 
 } // namespace tilenca

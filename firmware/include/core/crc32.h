@@ -1,4 +1,4 @@
-// CRC-32 with the polynomial of Ethernet, zlib and Python's binascii.crc32: what a firmware's id is made of.
+// CRC-32 as in Ethernet, zlib and Python's binascii.crc32. A firmware's id is the CRC-32 of its image.
 #pragma once
 
 #include <stdint.h>

@@ -1,14 +1,15 @@
 // Turns the times of a line's edges into bytes: the receiving half of the software UART.
 //
-// The interrupt only stores when the line changed and to what; the work is done here, outside it. The line is
-// sampled at the middle of every bit, as a hardware UART does, only afterwards. Knows no pin and no timer.
+// The interrupt only stores the time and the level of each edge. This class, which the main loop calls,
+// samples the line in the middle of every bit, as a hardware UART does, but afterwards. It knows no pin and
+// no timer.
 #pragma once
 
 #include <stdint.h>
 
 namespace tilenca {
 
-// `kBitCounts`: length of a bit in counts of the timer that stamps the edges.
+// `kBitCounts` is the length of a bit in counts of the timer that stamps the edges.
 template <uint8_t kBitCounts>
 class EdgeReceiver {
     static_assert(kBitCounts >= 8, "a bit has a middle");
@@ -16,16 +17,16 @@ class EdgeReceiver {
   public:
     static constexpr int16_t kNoByte = -1;
 
-    // Takes edges from the source until a byte is complete, and returns it; or, when there are no more, what
-    // is complete at the time `now`, if anything, or kNoByte. Call it at least four times per turn of the
-    // timer, or a byte without edges at its end waits for the next one.
+    // Takes edges from the source until a byte is complete, and returns it. If there are no more edges, the
+    // byte may be complete at the time `now`; otherwise returns kNoByte. Call it at least four times per turn
+    // of the timer, or a byte without edges at its end waits for the next one.
     //
-    // `source(&stamp)` gives the next edge, or false. Bit 0 of the stamp is the new level, the others are the
-    // timer's count. `now` is not before the last of them.
+    // `source(&stamp)` gives the next edge, or false. Bit 0 of the stamp is the new level, the other bits are
+    // the timer's count. `now` is not before the last stamp.
     template <typename Source>
     int16_t receive(Source source, uint16_t now);
 
-    // Forgets what it has heard: edges were lost, or the line is not to be believed.
+    // Starts anew, after edges were lost or the line was noisy.
     void reset() { state_ = State(); }
 
   private:
@@ -34,7 +35,8 @@ class EdgeReceiver {
     static constexpr uint8_t kIdle = 0xFF;
     static constexpr uint8_t kHigh = 0x80; // a bit as it enters a byte
 
-    // What changes from edge to edge. The chip has registers for it, as long as nobody has its address.
+    // Changes with every edge. The compiler keeps a copy of it in registers, as long as nothing takes its
+    // address.
     struct State {
         uint8_t level = kHigh; // of the line since the last edge: kHigh or 0
         uint8_t bit = kIdle;   // next to be sampled: 0 the start bit, 1..8 data, 9 the stop bit
@@ -48,7 +50,7 @@ class EdgeReceiver {
     State state_;
 };
 
-// The level has stayed until then. True if this completed state.byte.
+// The level has stayed the same until this time. True if this completed state.byte.
 template <uint8_t kBitCounts>
 inline bool EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
     bool complete = false;
@@ -77,11 +79,10 @@ inline bool EdgeReceiver<kBitCounts>::change(State& state, uint16_t stamp) {
     if (state.level) {
         return false;
     }
-    // Falling in the stop bit: the next start bit, though half of the stop bit is still due; a fast sender,
-    // or a stamp that came late before one that came early. The line was high, which is all a stop bit has to
-    // say.
+    // A falling edge in the second half of the stop bit is already the next start bit: the sender is fast, or
+    // stamps came late and early. The line was high, so the stop bit is good.
     const bool complete = state.bit == kStopBit && before;
-    // Even if it was low before: then the edge between was missed, and the line has fallen again.
+    // If the line was low before, the rising edge between was missed.
     if (state.bit == kIdle || complete) {
         state.bit = kStartBit;
         state.sample_at = stamp + kBitCounts / 2;

@@ -1,9 +1,8 @@
 // Read-only data in flash, and the only header that knows how flash is read.
 //
-// The AVR cannot read flash through an ordinary pointer: that compiles and returns whatever SRAM holds at the
-// address. A FlashView therefore never becomes a pointer, on no machine, so that a forgotten flash read does
-// not compile, natively included. Data declared with TILENCA_FLASH must lie in the low 64 KiB, where LPM
-// reaches.
+// On the AVR an ordinary pointer into flash compiles, but reads SRAM at that address. Therefore a FlashView
+// never becomes a pointer, not even on the host, and code that forgets to read flash does not compile. Data
+// declared with TILENCA_FLASH must lie in the low 64 KiB, which LPM can reach.
 #pragma once
 
 #include <stddef.h>
@@ -19,7 +18,7 @@
 
 namespace tilenca {
 
-// Reads every Stride-th byte, with no address arithmetic but one addition per byte.
+// Reads every Stride-th byte, at the price of one addition per byte.
 template <uint8_t Stride>
 class FlashColumn {
   public:
@@ -40,7 +39,7 @@ class FlashColumn {
     const uint8_t* next_;
 };
 
-// Values of type T that live in flash; the view is two bytes and does not own them.
+// Values of type T in flash. The view has two bytes and does not own them.
 template <typename T>
 class FlashView {
   public:
@@ -73,7 +72,7 @@ class FlashView {
 };
 
 #ifdef __AVR__
-// Without the library's loop: a table that is looked up for every byte of something.
+// Without the library's loop, since firmware_id() looks up a table for every byte of the program.
 template <>
 inline uint32_t FlashView<uint32_t>::operator[](uint16_t index) const {
     return pgm_read_dword(first_ + index);

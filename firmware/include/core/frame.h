@@ -8,7 +8,7 @@
 
 namespace tilenca {
 
-constexpr uint8_t kProtocolVersion = 2;
+constexpr uint8_t kProtocolVersion = 3;
 constexpr uint8_t kKindState = 0;
 constexpr uint8_t kHeaderSize = 5;
 constexpr uint8_t kCrcSize = 2;
@@ -30,29 +30,29 @@ uint8_t encode_frame(FrameHeader header, const int8_t* messages, uint8_t channel
 
 // Receives one byte at a time and says when a whole, checked frame has arrived.
 //
-// Owns no port: feed it from an interrupt, a test, or a simulator. One decoder per side.
+// It owns no port: an interrupt, a test or a simulator feeds it. Each side has its own.
 class FrameDecoder {
   public:
     enum class Result : uint8_t { Pending, Ready, Corrupt };
 
     explicit FrameDecoder(uint8_t channels) : channels_(channels) {}
 
-    // Takes the next byte of the line. Corrupt is said once per damaged frame, at its delimiter; the frame
-    // after it is received as if nothing had been.
+    // Takes the next byte of the line. A damaged frame gives Corrupt once, at its delimiter, and does not
+    // affect the next frame.
     Result feed(uint8_t byte);
 
-    // Of the frame that was Ready; both valid until the next feed().
+    // The frame that was Ready, valid until the next feed().
     FrameHeader header() const;
     const int8_t* messages() const { return reinterpret_cast<const int8_t*>(bytes_ + 1 + kHeaderSize); }
 
   private:
-    Result end_of_frame() __attribute__((noinline)); // most bytes have little to do with it
+    Result end_of_frame() __attribute__((noinline)); // so that feed() is short for most bytes
     bool decode();
     bool undo_cobs();
-    uint8_t whole_size() const { return 1 + kHeaderSize + channels_ + kCrcSize; } // less the delimiter
+    uint8_t whole_size() const { return 1 + kHeaderSize + channels_ + kCrcSize; } // without the delimiter
 
     uint8_t channels_;
-    uint8_t size_ = 0; // bytes since the last delimiter; stops one beyond what fits
+    uint8_t size_ = 0; // bytes since the last delimiter, at most one more than a frame has
     uint8_t bytes_[kMaxPayload + 1] = {};
 };
 

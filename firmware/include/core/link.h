@@ -1,5 +1,4 @@
-// What is known of the neighbour on one side: its last message, whether it still speaks, and how well the
-// line does.
+// The neighbour on one side: its last message, whether it is still there, and the counters of the line.
 #pragma once
 
 #include <stdint.h>
@@ -9,13 +8,13 @@
 namespace tilenca {
 
 constexpr uint8_t kSilentPeriods = 6;
-constexpr uint16_t kMaxPeriodMs = 10000; // no tile is slower
+constexpr uint16_t kMaxPeriodMs = 10000; // of any tile
 
 constexpr uint32_t silence_ms(uint16_t period_ms) {
     return static_cast<uint32_t>(period_ms) * kSilentPeriods;
 }
 
-// docs/PROTOCOL.md section 1 says what each counts.
+// docs/PROTOCOL.md section 1 defines them.
 struct LinkCounters {
     uint32_t sent = 0;
     uint32_t received = 0;
@@ -26,8 +25,8 @@ struct LinkCounters {
 
 class Link {
   public:
-    // `period_ms`: the tile's own. A neighbour is silent when its last good frame is older than silence_ms()
-    // of this or of its own period, whichever is longer. Its own shows in its frames.
+    // `period_ms` is the tile's own. A neighbour is silent when its last good frame is older than
+    // silence_ms() of the longer one of both periods. The neighbour's is learnt from its frames.
     Link(uint16_t model_id, uint8_t channels, uint16_t period_ms);
 
     void set_period(uint16_t period_ms) { period_ms_ = period_ms; }
@@ -35,24 +34,24 @@ class Link {
     // Takes the next byte from the line.
     void receive(uint8_t byte, uint32_t now_ms);
 
-    // Lets silence pass; call it at least once per time-out.
+    // Notices silence. Call it at least once per silence_ms().
     void tick(uint32_t now_ms);
 
-    // Whether the neighbour spoke lately and runs the same model.
+    // Whether the neighbour has been heard lately and runs the same model.
     bool alive() const { return who_ == Who::Neighbour; }
 
     // Its last message, `channels` values, or nullptr while not alive. Valid until the next receive() or
     // tick().
     const int8_t* message() const { return alive() ? message_ : nullptr; }
 
-    // Whether somebody speaks who runs another model.
+    // Whether the neighbour has been heard lately and runs another model.
     bool foreign() const { return who_ == Who::Stranger; }
 
-    // Writes the next frame to the neighbour (at most kMaxFrame bytes), from this side of the tile with this
-    // id, and counts it as sent.
+    // Writes the next frame to the neighbour, at most kMaxFrame bytes, and counts it as sent. `side` and
+    // `tile` are the sender's.
     uint8_t send(Side side, uint8_t tile, const int8_t* message, uint8_t* wire) __attribute__((noinline));
 
-    // Whether a good frame ever came, when the last one did, and whence: the neighbour's id and its side.
+    // Whether a good frame ever came. If so, the age of the last one, and the id and side of its sender.
     bool ever_received() const { return counters_.received != 0; }
     uint32_t age_ms(uint32_t now_ms) const { return now_ms - last_ms_; }
     uint8_t neighbour() const { return neighbour_; }
@@ -63,7 +62,7 @@ class Link {
   private:
     enum class Who : uint8_t { NobodyYet, Silence, Neighbour, Stranger };
 
-    // Never inlined, as send(): the loop that takes in single bytes then finds registers for what it needs.
+    // Not inlined, like send(), so that the loop over single bytes keeps its variables in registers.
     void frame_ended(bool good, uint32_t now_ms) __attribute__((noinline));
     void accept(uint32_t now_ms);
     void learn_pace(uint32_t now_ms);
@@ -71,16 +70,16 @@ class Link {
     uint16_t model_id_;
     uint8_t channels_;
     uint16_t period_ms_;
-    uint16_t pace_ms_ = 0; // the longest time from frame to frame lately
+    uint16_t pace_ms_ = 0; // the longest recent time from one frame to the next
     FrameDecoder decoder_;
     LinkCounters counters_;
-    Who who_ = Who::NobodyYet; // speaks there
+    Who who_ = Who::NobodyYet;
     uint8_t neighbour_ = 0;
     Side neighbour_side_ = Side::North;
-    uint8_t sequence_in_ = 0;  // of the last frame heard, whoever sent it
+    uint8_t sequence_in_ = 0;  // of the last frame, a stranger's included
     uint8_t sequence_out_ = 0; // of the next frame to send
-    uint32_t heard_ms_ = 0;    // that frame
-    uint32_t last_ms_ = 0;     // the last good one
+    uint32_t heard_ms_ = 0;    // when that frame came
+    uint32_t last_ms_ = 0;     // when the last good one came
     int8_t message_[kMaxChannels] = {};
 };
 

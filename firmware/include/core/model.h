@@ -1,4 +1,4 @@
-// What `tilenca export` renders: a network, the classes it tells apart, and how each of them looks.
+// What `tilenca export` renders: a network, its classes, and the look of each class.
 #pragma once
 
 #include <stdint.h>

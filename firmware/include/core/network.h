@@ -1,7 +1,8 @@
 // The network of a cell in integers: docs/PROTOCOL.md section 4, bit for bit.
 //
-// Works in slices, so that a tile can look after its links between them, and on weights of any size up to the
-// limits below, so that the host's simulator runs this very code.
+// It works in slices, so that a tile can look after its links between them. The weights may have any size up
+// to the limits below, so that the host's simulator runs this very code. core/layers.cpp or avr/layers.cpp
+// has the layers.
 #pragma once
 
 #include <stdint.h>
@@ -10,15 +11,15 @@
 
 namespace tilenca {
 
-constexpr uint8_t kTaps = 5; // own message, then those of N, E, S, W
+constexpr uint8_t kNeighbourhood = 5; // von Neumann: the cell itself, then N, E, S, W
 constexpr uint8_t kMaxChannels = 51;
 constexpr uint8_t kMaxHidden = 127;
-constexpr uint8_t kMaxInputs = kTaps * kMaxChannels; // 255: counters fit a uint8_t
+constexpr uint8_t kMaxInputs = kNeighbourhood * kMaxChannels; // 255: counters fit a uint8_t
 
 constexpr int16_t kMessageMax = 127;
 constexpr uint8_t kMessageShift = 7; // stored state 2^-13, message 2^-6
 constexpr int16_t kStateMax = kMessageMax << kMessageShift;
-constexpr int16_t kSeedState = 1 << 13; // 1.0, in channel 0 of a cell that was just switched on
+constexpr int16_t kSeedState = 1 << 13; // 1.0, the start of channel 0
 constexpr uint8_t kHiddenShift = 6;     // accumulator 2^-12, activation 2^-6
 constexpr int8_t kHiddenMax = 127;
 constexpr uint8_t kHiddenRounding = 1 << (kHiddenShift - 1);
@@ -40,6 +41,14 @@ inline int8_t message_of(int16_t state) {
 // The class with the greatest of the stored scores, the lowest among equals.
 uint8_t best_class(const int16_t* scores, uint8_t classes);
 
+struct Decision {
+    uint8_t best;   // as best_class() says
+    uint8_t margin; // how far it is ahead of the second best, in units of a message, rounded: 0..254
+
+    static constexpr uint8_t kNoMargin = 255; // there is only one class
+};
+Decision decide(const int16_t* scores, uint8_t classes);
+
 // The sum of 5 C messages.
 int16_t sum_of_messages(const int8_t* messages, uint8_t channels);
 
@@ -49,11 +58,12 @@ struct Inputs {
     int16_t sum;          // of them
 };
 
-// Outputs [from, to) of a hidden layer, each 0..127, and zeros up to a whole pass; returns their sum. `from`
-// is the first of a pass.
+// Computes outputs [from, to) of a hidden layer, each 0..127, fills the last block up with zeros, and returns
+// their sum. `from` is the first output of a block.
 int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs);
 
-// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax. `from` is as above.
+// Adds outputs [from, to) of the last layer to the state, saturating at +-kStateMax. `from` is the first
+// output of a block.
 void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state);
 
 // One update of one cell, a slice at a time.
@@ -65,19 +75,19 @@ class Forward {
     // place) stay the caller's and must live until done().
     void begin(int8_t* inputs, int16_t* state);
 
-    // Computes some passes, on the chip for 1.5 ms at most. No effect when done.
+    // Computes some blocks, which takes the chip 1.5 ms at most. No effect when done().
     void step();
 
-    // Gives the update up; the state may be half old, half new.
+    // Abandons the update. The state may be half old, half new.
     void stop() { stage_ = Stage::Done; }
 
     bool done() const { return stage_ == Stage::Done; }
 
   private:
     enum class Stage : uint8_t { Hidden1, Hidden2, Output, Done };
-    // Whole passes, and kEnd.
-    static constexpr uint8_t kHiddenRoom = (kMaxHidden / kPassOutputs + 1) * kPassOutputs;
-    static constexpr int16_t kRowsPerSlice = 320; // of kPassOutputs weights each: 72 cycles at most
+    // Whole blocks, and kEnd.
+    static constexpr uint8_t kHiddenRoom = (kMaxHidden / kBlockOutputs + 1) * kBlockOutputs;
+    static constexpr int16_t kRowsPerSlice = 320; // of kBlockOutputs weights each: 72 cycles at most
 
     void begin_layer(const Layer& layer, const Inputs& inputs, Stage stage);
     void next_layer();

@@ -1,5 +1,4 @@
-// The sending half of the software UART: when the line has to change, worked out before the first bit goes
-// out.
+// The sending half of the software UART. It works out where the line changes before the first bit is sent.
 #pragma once
 
 #include <stdint.h>
@@ -14,10 +13,10 @@ constexpr uint8_t kNoMoreToggles = 0x80;
 constexpr uint16_t kMaxToggleBytes =
     (kMaxFrame * kBitsPerByte + kTogglesPerByte - 1) / kTogglesPerByte + 1; // and the end
 
-// Writes one bit per bit time, the first in bit 7 of toggles[0], seven to a byte: 1 where an idle (high) line
-// must change to send `size` bytes, 8N1. Bit 0 of each byte is 1, so that whoever shifts its seven out to the
-// left holds 0x80 when none is left. The last byte is filled with zeros. Then comes kNoMoreToggles. Returns
-// the number of bytes written, at most kMaxToggleBytes.
+// Writes the toggles that send `size` bytes, 8N1, on an idle (high) line: one bit per bit time, 1 where the
+// line changes. A byte has seven of them, the first in bit 7, and a 1 in bit 0: after seven shifts to the
+// left it is 0x80. The last byte is filled up with zeros, and kNoMoreToggles follows. Returns the number of
+// bytes written, at most kMaxToggleBytes.
 uint8_t toggles_of(const uint8_t* bytes, uint8_t size, uint8_t* toggles);
 
 } // namespace tilenca

@@ -6,7 +6,7 @@ namespace {
 
 constexpr Look kFoundLook = {'8', 0x7F, 60, 60, 60};
 
-// Half of the time, about twice a second.
+// True for half of the time; changes about four times a second.
 bool lit_phase(uint32_t now_ms) {
     return now_ms >> 8 & 1;
 }

@@ -58,16 +58,15 @@ Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
 }
 
 Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
-    Settings settings = tile.settings();
-    if (!change(&settings)) {
+    wanted_ = tile.settings();
+    if (!change(&wanted_)) {
         write_nak(tile, "VALUE", reader_.field(0), sentence);
         return Result::Answer;
     }
-    write_settings(settings, block_);
     return Result::Store;
 }
 
-// Changes what the command names; false if there is no such setting or value.
+// Changes the setting that the command names. False if there is no such setting or value.
 bool Host::change(Settings* settings) const {
     const char* name = reader_.field(1);
     const char* text = reader_.field(2);
@@ -92,21 +91,16 @@ bool Host::change(Settings* settings) const {
     return true;
 }
 
-bool Host::stored(const uint8_t (&first)[kSettingsSize], const uint8_t (&second)[kSettingsSize], Tile* tile,
-                  Sentence* sentence) {
-    Settings settings;
-    if (memcmp(first, block_, sizeof block_) != 0 || memcmp(second, block_, sizeof block_) != 0 ||
-        !parse_settings(first, &settings)) {
-        write_settings(tile->settings(), block_);
+void Host::end_set(bool stored, Tile* tile, Sentence* sentence) {
+    if (!stored) {
         write_nak(*tile, "EEPROM", reader_.field(0), sentence);
-        return false;
+        return;
     }
-    tile->apply(settings);
+    tile->apply(wanted_);
     begin_ack(*tile, sentence);
     sentence->text(reader_.field(1));
     sentence->text(reader_.field(2));
     sentence->end();
-    return true;
 }
 
 bool Host::blinking(uint32_t now_ms) {

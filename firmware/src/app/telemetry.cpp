@@ -28,10 +28,13 @@ void write_tile(const Tile& tile, uint32_t now_ms, Sentence* sentence) {
     sentence->number(tile.settings().tile_id);
     sentence->number(now_ms);
     sentence->number(tile.updates());
+    const bool decided = tile.shown() != Tile::kNothing;
     sentence->nothing();
-    if (tile.shown() != Tile::kNothing) {
+    if (decided) {
         sentence->more(tile.model().looks[tile.shown()].label);
     }
+    decided ? sentence->number(tile.shown()) : sentence->nothing();
+    tile.margin() != Decision::kNoMargin ? sentence->number(tile.margin()) : sentence->nothing();
     sentence->nothing();
     for (uint8_t i = 0; i < kSides; ++i) {
         sentence->more(tile.link(side_at(i)).alive() ? kSideLetters[i] : '-');
@@ -152,7 +155,7 @@ bool Telemetry::write(const Tile& tile, const Health& health, uint32_t now_ms, S
         next_side_ = (next_side_ + 1) % kSides;
         break;
     case Next::Time:
-        // A second after the last one was due, not after it was written: the phase stays.
+        // The next one is due a second after this one was due, not after it was written.
         last_time_ms_ += (now_ms - last_time_ms_) / kTimePeriodMs * kTimePeriodMs;
         write_time(tile, health, dropped_, now_ms, sentence);
         return true;

@@ -21,7 +21,7 @@ Tile::Tile(const Model& model, const Settings& settings, uint32_t now_ms)
 void Tile::restart() {
     cell_.seed();
     updates_ = 0;
-    shown_ = kNothing;
+    decided_ = {kNothing, Decision::kNoMargin};
     tell();
 }
 
@@ -43,7 +43,7 @@ bool Tile::tick(uint32_t now_ms) {
             return false;
         }
         ++updates_;
-        shown_ = cell_.best_class(model_.classes);
+        decided_ = cell_.decide(model_.classes);
         tell();
         return true;
     }
@@ -66,8 +66,7 @@ bool Tile::period_ends(uint32_t now_ms) {
     if (late_ms < 0) {
         return false;
     }
-    // The phase stays what it was at boot, however late the call: whole periods that were missed are left
-    // out.
+    // The phase stays the same, however late the call: whole periods that were missed are skipped.
     const uint32_t missed = static_cast<uint32_t>(late_ms) / settings_.period_ms;
     due_ms_ += (missed + 1) * settings_.period_ms;
     return true;

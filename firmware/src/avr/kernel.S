@@ -1,21 +1,25 @@
-; Outputs of a layer, eight at a time side by side in registers: the functions of core/network.h on the chip.
+; Computes a layer in blocks of eight outputs, which are side by side in registers. layers.cpp calls it.
 ;
-;   int16_t tilenca_passes(const uint8_t* passes, const int8_t* inputs, int16_t sum, void* results,
+;   int16_t tilenca_blocks(const uint8_t* blocks, const int8_t* inputs, int16_t sum, void* results,
 ;                          r25:r24                r23:r22               r21:r20      r19:r18
 ;                          uint8_t count)
 ;                          r16
 ;
-; `passes` in flash: those of core/layer.h. `inputs` end with -128, and `sum` is theirs; if all passes are
-; narrow, it may be anything. Bits 6..0 of `count` say how many outputs: rounded up to whole passes, they go to
-; the int8 at `results` as activations, and their sum is returned; or, with bit 7, they are added to the int16
-; at `results`. Five outputs that are left, or fewer, have rows of their own.
+; `blocks` is a packed layer in flash, as core/layer.h describes it. -128 follows the last of the `inputs`.
+; `sum` is their sum, or anything where every block has 16-bit accumulators. Bits 6..0 of `count` are the
+; number of outputs, rounded up to whole blocks. Bit 7 says what happens to them:
 ;
-; This file is about sums of 24 bits, narrow.inc about those of 16. Offsets make every product unsigned, so that
-; its carry is all a third byte needs: 8 cycles per weight. What is too much, 128 times the sum of the inputs
-; and 32768, is taken off where the sums start. An input of zero skips its row, that of a negative one is
-; subtracted. Interrupts may come at any time. Stack: 33 bytes with the return address.
+;   clear  they are stored as activations in the int8 at `results`, and their sum is returned
+;   set    they are added to the int16 at `results`
+;
+; This file and accumulate24.inc use 24-bit accumulators, accumulate16.inc 16-bit ones. In flash the weights
+; and biases have offsets that make every product unsigned. A product then adds nothing but its carry to the
+; third byte: 8 cycles per weight. To balance the offsets, every sum starts at minus 32768 and 128 times the
+; sum of the inputs. A row whose input is zero is skipped, and one whose input is negative is subtracted. The last
+; five outputs or fewer have shorter rows. Interrupts may come at any time. Stack: 33 bytes with the return
+; address.
 
-#include "wide.inc"
+#include "accumulate24.inc"
 
 #define SPL 0x3d
 #define SPH 0x3e
@@ -27,15 +31,15 @@
 #define COUNT_AT 8
 #define RESULTS 9
 
-    .section .text.tilenca_passes, "ax", @progbits
-    .global tilenca_passes
-    .type tilenca_passes, @function
-tilenca_passes:
+    .section .text.tilenca_blocks, "ax", @progbits
+    .global tilenca_blocks
+    .type tilenca_blocks, @function
+tilenca_blocks:
     .irp saved, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29
     push r\saved
     .endr
     movw r30, r24
-    ; Every sum starts at its bias and r26:r25:r24: 32 to round an activation, less the offsets.
+    ; Every sum starts at its bias plus r26:r25:r24, which is 32 to round an activation, minus the offsets.
     asr r21
     ror r20
     clr r17
@@ -52,15 +56,15 @@ tilenca_passes:
     push r\argument
     .endr
 
-.Lpass:
+.Lblock:
     in r28, SPL
     in r29, SPH
     clr r1
     lpm r0, Z+
     cpse r0, r1
-    rjmp .Lnarrow
-.Lwide:
-    ; T: no more than five, of the last layer; in others the rest of a pass must become zeros.
+    rjmp .Lblock16
+.Lblock24:
+    ; T: the last layer has five outputs left or fewer. In the others the rest of a block must become zeros.
     ldd r16, Y + COUNT_AT
     subi r16, 0x80
     subi r16, 6
@@ -111,7 +115,7 @@ tilenca_passes:
     std Y + COUNT_AT, r16
     breq .Ldone
     brcs .Ldone
-    rjmp .Lpass
+    rjmp .Lblock
 
 .Ldone:
     pop r24
@@ -126,8 +130,7 @@ tilenca_passes:
     clr r1
     ret
 
-; Z walks through the sums where the chip maps its registers: r2 is at address 2. r4 is read before it is
-; written.
+; Z reads the sums through the chip's register addresses: r2 is at address 2. r4 is read before it is written.
 .Lto_state:
     ldd r28, Y + COUNT_AT
     andi r28, 0x7F
@@ -150,7 +153,7 @@ tilenca_passes:
     inc r29
 2:  sbrc r28, 7
     dec r29
-    ; r29:r1:r0 is the new state, to be kept within 0x3F80 of zero.
+    ; r29:r1:r0 is the new state. Limit it to -0x3F80..0x3F80.
     tst r29
     brmi 3f
     ldi r28, 0x3F
@@ -190,7 +193,7 @@ tilenca_passes:
     cpi r16, 0x81
     brsh 9f
     rjmp .Ldone
-9:  rjmp .Lpass
+9:  rjmp .Lblock
 
-#include "narrow.inc"
-    .size tilenca_passes, . - tilenca_passes
+#include "accumulate16.inc"
+    .size tilenca_blocks, . - tilenca_blocks

@@ -1,4 +1,4 @@
-; The sum of five times `fives` messages.
+; The sum of 5 * `fives` messages.
 ;
 ;   int16_t tilenca_sum(const int8_t* messages, uint8_t fives)
 ;                       r25:r24                 r22
@@ -7,7 +7,7 @@
     .type tilenca_sum, @function
 tilenca_sum:
     movw r30, r24
-    ; Messages are summed as message + 128, so start at -128 times their number.
+    ; Each is added as message + 128, so the sum starts at -128 times their number.
     ldi r25, 5
     mul r22, r25
     mov r25, r0

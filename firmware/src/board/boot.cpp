@@ -3,10 +3,12 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/wdt.h>
+#include <stddef.h>
 
+#include "board/boot_layout.h"
 #include "core/crc32.h"
 
-// Where variables end and the stack's room begins; the linker's.
+// From the linker: where variables end and the stack's room begins.
 extern "C" uint8_t __heap_start;
 
 namespace tilenca {
@@ -14,52 +16,50 @@ namespace board {
 
 namespace {
 
-constexpr uint8_t kPaint = 0xC5;
-
-// What outlives a reset, but not a loss of power, in SRAM that nobody clears.
-constexpr uint32_t kRunning = 0x52554E21;
-constexpr uint32_t kHung = 0x48554E47;
-struct Kept {
-    uint32_t mark;
-    uint8_t cause;
-    uint8_t hung_at[3]; // word address, low byte first
-};
-__attribute__((section(".noinit"))) volatile Kept kept;
-
 uint8_t inferred_cause(uint32_t mark) {
-    return mark == kHung ? 1 << WDRF : mark == kRunning ? 1 << EXTRF : 1 << PORF;
-}
-
-// Before the start-up code clears memory, with nothing on the stack yet.
-__attribute__((naked, used, section(".init3"))) void start() {
-    const uint8_t cause = MCUSR;
-    MCUSR = 0;
-    wdt_disable(); // a watchdog that has reset the chip runs on
-    kept.cause = cause != 0 ? cause : inferred_cause(kept.mark);
-    if (kept.mark != kHung) {
-        kept.hung_at[0] = kept.hung_at[1] = kept.hung_at[2] = 0;
-    }
-    kept.mark = kRunning;
-    for (uint8_t* at = &__heap_start; at <= reinterpret_cast<uint8_t*>(RAMEND); ++at) {
-        *at = kPaint;
-    }
+    return mark == MARK_HUNG ? 1 << WDRF : mark == MARK_RUNNING ? 1 << EXTRF : 1 << PORF;
 }
 
 } // namespace
 
+// In SRAM that nobody clears: it outlives a reset, but not a loss of power.
+struct Survivors {
+    uint32_t mark;
+    uint8_t cause;
+    uint8_t hung_at[3]; // word address, low byte first
+};
+static_assert(offsetof(Survivors, mark) == SURVIVORS_MARK && offsetof(Survivors, cause) == SURVIVORS_CAUSE &&
+                  offsetof(Survivors, hung_at) == SURVIVORS_HUNG_AT && sizeof(Survivors) == SURVIVORS_BYTES,
+              "avr/boot.S");
+
+extern "C" {
+__attribute__((section(".noinit"))) volatile Survivors tilenca_survivors;
+
+// avr/boot.S calls this with the value of MCUSR, before any variable has its initial value.
+__attribute__((used)) void tilenca_survive(uint8_t cause) {
+    const uint32_t mark = tilenca_survivors.mark;
+    tilenca_survivors.cause = cause != 0 ? cause : inferred_cause(mark);
+    if (mark != MARK_HUNG) {
+        tilenca_survivors.hung_at[0] = tilenca_survivors.hung_at[1] = tilenca_survivors.hung_at[2] = 0;
+    }
+    tilenca_survivors.mark = MARK_RUNNING;
+}
+}
+
 uint8_t reset_cause() {
-    return kept.cause;
+    return tilenca_survivors.cause;
 }
 
 uint32_t hung_at() {
-    const uint32_t word = kept.hung_at[0] | static_cast<uint16_t>(kept.hung_at[1]) << 8 |
-                          static_cast<uint32_t>(kept.hung_at[2]) << 16;
+    const uint32_t word = tilenca_survivors.hung_at[0] |
+                          static_cast<uint16_t>(tilenca_survivors.hung_at[1]) << 8 |
+                          static_cast<uint32_t>(tilenca_survivors.hung_at[2]) << 16;
     return 2 * word;
 }
 
 namespace {
 
-// The bytes of flash from here on; `address` moves on.
+// Reads bytes of flash and advances `address`.
 void read_flash(uint32_t* address, uint8_t* bytes, uint8_t size) {
     RAMPZ = static_cast<uint8_t>(*address >> 16);
     uint16_t low = static_cast<uint16_t>(*address);
@@ -69,7 +69,7 @@ void read_flash(uint32_t* address, uint8_t* bytes, uint8_t size) {
     *address += size;
 }
 
-// One byte after the last of the image: the program, then the variables' initial values.
+// The end of the image, which is the program and the initial values of the variables.
 uint32_t image_end() {
     uint32_t end;
     __asm__("ldi %A0, lo8(__data_load_end) \n\t"
@@ -95,8 +95,8 @@ uint32_t firmware_id() {
     return crc.value();
 }
 
-// Interrupt first, reset if that does not come through: old boot loaders of the Mega leave the watchdog on,
-// and are reset by it for ever before they have started anything.
+// Interrupt first, and reset only if the interrupt does not come through: old boot loaders of the Mega leave
+// the watchdog on, which then resets them again and again before they have started anything.
 void watchdog_begin() {
     const uint8_t interrupts = SREG;
     cli();
@@ -110,30 +110,6 @@ void watchdog_feed() {
     wdt_reset();
 }
 
-// Returns to address 0 instead of where the program hung. All that could interrupt the start-up code is off
-// before.
-ISR(WDT_vect, ISR_NAKED) {
-    __asm__ volatile("clr __zero_reg__ \n\t"
-                     "pop r18 \n\t"
-                     "pop r19 \n\t"
-                     "pop r20 \n\t"
-                     "push __zero_reg__ \n\t"
-                     "push __zero_reg__ \n\t"
-                     "push __zero_reg__ \n\t"
-                     "sts %0+2, r18 \n\t"
-                     "sts %0+1, r19 \n\t"
-                     "sts %0, r20 \n\t"
-                     :
-                     : "i"(&kept.hung_at)
-                     : "r18", "r19", "r20");
-    kept.mark = kHung;
-    TIMSK0 = TIMSK1 = TIMSK2 = TIMSK3 = TIMSK4 = TIMSK5 = 0;
-    UCSR0B = UCSR1B = UCSR2B = UCSR3B = 0;
-    PCICR = 0;
-    wdt_disable();
-    __asm__ volatile("reti");
-}
-
 namespace {
 
 constexpr uint8_t kLookedAtPerTurn = 4;
@@ -144,7 +120,7 @@ uint16_t unused = 0xFFFF;
 
 bool stack_watch() {
     for (uint8_t i = 0; i < kLookedAtPerTurn; ++i) {
-        if (*looking_at != kPaint) {
+        if (*looking_at != STACK_PAINT) {
             unused = static_cast<uint16_t>(looking_at - &__heap_start);
             looking_at = &__heap_start;
             return true;

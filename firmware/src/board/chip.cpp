@@ -9,8 +9,8 @@ namespace board {
 
 namespace {
 
-volatile uint8_t ticks = 0; // milliseconds modulo 256: all that the interrupt has time for
-uint32_t now = 0;           // as last told
+volatile uint8_t ticks = 0; // milliseconds modulo 256, since a longer count would take the interrupt longer
+uint32_t now = 0;           // the last result of now_ms()
 
 } // namespace
 
@@ -35,7 +35,7 @@ uint32_t now_ms() {
 uint16_t stamp() {
     const uint8_t interrupts = SREG;
     cli();
-    const uint16_t count = TCNT5; // through a register that the south link's interrupt uses too
+    const uint16_t count = TCNT5; // the south link's interrupt uses the same latch for its high byte
     SREG = interrupts;
     return count;
 }
@@ -49,7 +49,7 @@ void sleep() {
     sleep_enable();
     cli();
     while (ticks == static_cast<uint8_t>(now)) {
-        sei(); // takes effect after the next instruction: a tick that comes in between ends the sleep at once
+        sei(); // takes effect after the next instruction, so a tick in between ends the sleep at once
         sleep_cpu();
         cli();
     }

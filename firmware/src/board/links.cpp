@@ -1,15 +1,25 @@
 #include "board/links.h"
 
 #include "board/gpio.h"
+#include "board/ring.h"
 #include "board/south_uart.h"
 #include "board/usart.h"
+#include "board/usart_layout.h"
 
 namespace tilenca {
 namespace board {
 
 namespace {
 
-// East and west have USARTs at both ends; north meets the software UART of the tile above.
+constexpr uint32_t us_of_bits(uint32_t bits, uint32_t baud) {
+    return bits * 1000000 / baud;
+}
+
+constexpr uint8_t kByteBits = 10; // start, eight data, stop
+static_assert(us_of_bits(kByteBits*(QUARTER_BYTES - 1), kRowBaud) >= kReadEveryUs, "a USART's queue");
+static_assert(us_of_bits(sizeof(Page) - 1, kLinkBaud) >= kReadEveryUs, "the south link's ring of edges");
+
+// East and west have a USART at both ends. North is connected to the software UART of the tile above.
 constexpr uint32_t baud_of(Side side) {
     return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
 }

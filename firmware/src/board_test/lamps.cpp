@@ -1,6 +1,6 @@
 #include "board_test/lamps.h"
 
-#include "board/face.h"
+#include "board/display.h"
 #include "board/pins.h"
 #include "board_test/say.h"
 #include "core/side.h"
@@ -9,7 +9,7 @@ namespace tilenca {
 
 namespace {
 
-// What the display shows while it is not tested itself.
+// The display while LEDs and colours are tested.
 constexpr uint8_t kGlyphL = 0x38;
 constexpr uint8_t kGlyphC = 0x39;
 

@@ -1,10 +1,10 @@
-// Is the board in order? Each step lights something or listens to the sides; the button, or a letter from the
-// host, goes to the next. docs/BOARD_TEST.md says what to look for.
+// Is the board in order? Each step lights something or tests the sides. The button goes to the next step, a
+// letter from the host to any. docs/BOARD_TEST.md says what to look for.
 #include <Arduino.h>
 
 #include "app/button.h"
 #include "board/chip.h"
-#include "board/face.h"
+#include "board/display.h"
 #include "board/gpio.h"
 #include "board/links.h"
 #include "board/pins.h"
@@ -21,7 +21,7 @@ constexpr uint32_t kHostBaud = 115200;
 constexpr uint16_t kLampMs = 500;
 constexpr char kLetters[kSteps + 1] = "dlcs";
 
-// What the display shows of the sides: how many are in order.
+// For the display: how many sides are in order.
 constexpr uint8_t kDigits[kSides + 1] = {0x3F, 0x06, 0x5B, 0x4F, 0x66};
 
 Step step = Step::Segments;
@@ -43,7 +43,7 @@ PGM_P text_of(Verdict verdict) {
         return PSTR("pass, loop-back");
     case Verdict::Neighbour:
         return PSTR("pass, a tile that hears this one, from its side ");
-    case Verdict::Unheard:
+    case Verdict::OneWay:
         return PSTR("FAIL, a tile that does not hear this one: a broken line from ");
     case Verdict::Unreliable:
         return PSTR("FAIL, packets lost: ");
@@ -62,7 +62,7 @@ void say_side(uint8_t i) {
     case Verdict::Low:
         say(board::kSideRx[i]);
         break;
-    case Verdict::Unheard:
+    case Verdict::OneWay:
         say(board::kSideTx[i]);
         break;
     case Verdict::Neighbour:
@@ -148,7 +148,7 @@ void listen(uint32_t now_ms) {
     }
 }
 
-// The sides are tested all the time, whatever is shown: a neighbour may be in another step.
+// The sides are tested in every step, since a neighbour may be in another one.
 void check_sides(uint32_t now_ms) {
     static uint32_t sent_ms = 0;
     static uint32_t judged_ms = 0;
@@ -178,8 +178,8 @@ void check_sides(uint32_t now_ms) {
 
 void setup() {
     board::clock_begin();
+    board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
-    board::face_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
     say_help();
     if (board::button_closed()) {

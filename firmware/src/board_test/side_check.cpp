@@ -9,7 +9,7 @@ namespace tilenca {
 namespace {
 
 constexpr uint8_t kMark = 'T';
-constexpr uint8_t kHearsFlag = 0x10; // beside the side: the sender hears somebody there
+constexpr uint8_t kHearsFlag = 0x10; // or-ed to the side: the sender hears its neighbour
 constexpr uint8_t kSideMask = 0x0F;
 constexpr uint8_t kChecked = SideCheck::kPacketSize - 2;
 
@@ -60,7 +60,7 @@ Verdict SideCheck::found() const {
     if (from_ == side_) {
         return Verdict::LoopBack;
     }
-    return heard_us_ ? Verdict::Neighbour : Verdict::Unheard;
+    return heard_us_ ? Verdict::Neighbour : Verdict::OneWay;
 }
 
 bool SideCheck::judge() {
@@ -68,7 +68,7 @@ bool SideCheck::judge() {
     verdict_ = found();
     lost_ = missed_;
     hears_ = received_ != 0;
-    in_sequence_ = hears_; // after silence the next packet follows none
+    in_sequence_ = hears_; // after silence any packet may come next
     received_ = missed_ = 0;
     was_high_ = false;
     return verdict_ != before;

@@ -18,11 +18,11 @@ void Cell::seed() {
 void Cell::perceive(const int8_t* const (&neighbours)[kSides]) {
     const uint8_t count = channels();
     for (uint8_t side = 0; side < kSides; ++side) {
-        int8_t* tap = inputs_ + count * (1 + side);
+        int8_t* message = inputs_ + count * (1 + side);
         if (neighbours[side] == nullptr) {
-            memset(tap, 0, count);
+            memset(message, 0, count);
         } else {
-            memcpy(tap, neighbours[side], count);
+            memcpy(message, neighbours[side], count);
         }
     }
     forward_.begin(inputs_, state_);
@@ -40,8 +40,8 @@ bool Cell::update_slice() {
     return true;
 }
 
-uint8_t Cell::best_class(uint8_t classes) const {
-    return tilenca::best_class(state_ + channels() - classes, classes);
+Decision Cell::decide(uint8_t classes) const {
+    return tilenca::decide(state_ + channels() - classes, classes);
 }
 
 void Cell::tell() {

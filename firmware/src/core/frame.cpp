@@ -10,7 +10,7 @@ constexpr uint8_t kVersionAndKind = kProtocolVersion << 4 | kKindState << 2;
 constexpr uint8_t kSideBits = 3;
 
 // Replaces every zero of bytes[1..size] by the distance to the next one; bytes[0] starts the chain. The
-// payload is shorter than COBS's longest block, so the blocks need no splitting.
+// payload is shorter than COBS's longest block, so no block has to be split.
 void do_cobs(uint8_t* bytes, uint8_t size) {
     uint8_t code_at = 0;
     for (uint8_t i = 1; i <= size; ++i) {
@@ -93,7 +93,7 @@ bool FrameDecoder::decode() {
 
 // Puts the zeros back in place; false if the chain of codes does not end at the end.
 bool FrameDecoder::undo_cobs() {
-    uint16_t at = bytes_[0]; // may point far beyond the end: 16 bits, so that it cannot come round again
+    uint16_t at = bytes_[0]; // 16 bits: a damaged code may point far beyond the end, and must not wrap
     while (at < size_) {
         const uint8_t distance = bytes_[at];
         bytes_[at] = 0;

@@ -24,7 +24,7 @@ void Link::receive(uint8_t byte, uint32_t now_ms) {
 
 void Link::frame_ended(bool good, uint32_t now_ms) {
     if (good) {
-        tick(now_ms); // a frame that ends a silence must not count what was missed during it
+        tick(now_ms); // after a silence, the frames that were missed during it do not count as lost
         accept(now_ms);
     } else {
         ++counters_.corrupt;
@@ -55,8 +55,8 @@ void Link::accept(uint32_t now_ms) {
     memcpy(message_, decoder_.messages(), channels_);
 }
 
-// Two frames that follow one another by their numbers are a period of their sender apart, and no slow tile is
-// taken for one that comes and goes. The longest such time counts; what comes faster lets it fade.
+// Two frames with consecutive sequence numbers are one period of their sender apart. The longest such time
+// counts, so that a slow tile does not seem to come and go; faster frames let it decay.
 void Link::learn_pace(uint32_t now_ms) {
     if (who_ == Who::NobodyYet) {
         return;

@@ -1,7 +1,5 @@
 #include "core/network.h"
 
-#include "core/arithmetic.h"
-
 namespace tilenca {
 
 namespace {
@@ -22,70 +20,34 @@ uint8_t best_class(const int16_t* scores, uint8_t classes) {
     return best;
 }
 
-#ifdef __AVR__
-
-// firmware/src/avr
-extern "C" {
-int16_t tilenca_passes(uint16_t passes, const int8_t* inputs, int16_t sum, void* results, uint8_t count);
-int16_t tilenca_sum(const int8_t* messages, uint8_t fives);
-}
-
-namespace {
-constexpr uint8_t kToState = 0x80;
-static_assert(kTaps == 5, "tilenca_sum");
-} // namespace
-
-int16_t sum_of_messages(const int8_t* messages, uint8_t channels) {
-    return tilenca_sum(messages, channels);
-}
-
-int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
-    return tilenca_passes(layer.address_of(from), inputs.values, inputs.sum, outputs + from, to - from);
-}
-
-void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
-    tilenca_passes(layer.address_of(from), inputs.values, inputs.sum, state + from, kToState | (to - from));
-}
-
-#else
-
-int16_t sum_of_messages(const int8_t* messages, uint8_t channels) {
-    int16_t sum = 0;
-    for (uint8_t i = 0; i < kTaps * channels; ++i) {
-        sum += messages[i];
+Decision decide(const int16_t* scores, uint8_t classes) {
+    const uint8_t best = best_class(scores, classes);
+    uint16_t least = UINT16_MAX;
+    for (uint8_t k = 0; k < classes; ++k) {
+        const uint16_t ahead = static_cast<uint16_t>(scores[best] - scores[k]);
+        if (k != best && ahead < least) {
+            least = ahead;
+        }
     }
-    return sum;
-}
-
-int16_t hidden_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int8_t* outputs) {
-    const uint8_t end = (to + kPassOutputs - 1) / kPassOutputs * kPassOutputs;
-    hidden_outputs<OneCell>(layer, inputs.values, from, end, outputs);
-    int16_t sum = 0;
-    for (uint8_t j = from; j < to; ++j) {
-        sum += outputs[j];
+    if (classes == 1) {
+        return {best, Decision::kNoMargin};
     }
-    return sum;
+    return {best, static_cast<uint8_t>((least + (1 << (kMessageShift - 1))) >> kMessageShift)};
 }
-
-void add_outputs(const Layer& layer, const Inputs& inputs, uint8_t from, uint8_t to, int16_t* state) {
-    add_outputs<OneCell>(layer, inputs.values, from, to, state);
-}
-
-#endif
 
 void Forward::begin(int8_t* inputs, int16_t* state) {
     const uint8_t count = network_.hidden1.inputs;
     inputs[count] = kEnd;
     state_ = state;
     const Layer& layer = network_.hidden1;
-    const int16_t sum = layer.narrow_only ? 0 : sum_of_messages(inputs, network_.channels());
+    const int16_t sum = layer.only_16_bit ? 0 : sum_of_messages(inputs, network_.channels());
     begin_layer(layer, {inputs, sum}, Stage::Hidden1);
 }
 
 void Forward::begin_layer(const Layer& layer, const Inputs& inputs, Stage stage) {
     uint8_t slice = 0;
     for (int16_t rows = kRowsPerSlice; rows >= layer.inputs && slice < layer.outputs; rows -= layer.inputs) {
-        slice += kPassOutputs;
+        slice += kBlockOutputs;
     }
     slice_ = slice;
     layer_ = &layer;

@@ -4,13 +4,13 @@ namespace tilenca {
 
 namespace {
 
-constexpr uint8_t kMark = 1; // behind the seven toggles of a byte
+constexpr uint8_t kMark = 1; // after the seven toggles of a byte
 
 } // namespace
 
 uint8_t toggles_of(const uint8_t* bytes, uint8_t size, uint8_t* toggles) {
     uint8_t* out = toggles;
-    uint8_t bits = kMark; // the toggles so far, behind a mark that the seventh pushes into bit 7
+    uint8_t bits = kMark; // the mark, which the seventh toggle pushes into bit 7, and the toggles so far
     for (uint8_t i = 0; i < size; ++i) {
         // Start bit in bit 0, stop bit in bit 9; the line is high before every byte.
         const uint16_t levels = 0x200 | static_cast<uint16_t>(bytes[i]) << 1;

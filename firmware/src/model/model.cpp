@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model D968; do not edit. Body 38fa426e2f82cc1c
+// Rendered by `tilenca export` from model D968; do not edit. Body f7fad3f2a0d11328
 #include "model/model.h"
 
 namespace tilenca {
@@ -776,7 +776,7 @@ const Model kModel = {
     kModelId,
     kClasses,
     {
-        {kTaps * kChannels, kHidden1, FlashView<uint8_t>(kLayer1), false, kHiddenRounding},
+        {kNeighbourhood * kChannels, kHidden1, FlashView<uint8_t>(kLayer1), false, kHiddenRounding},
         {kHidden1, kHidden2, FlashView<uint8_t>(kLayer2), false, kHiddenRounding},
         {kHidden2, kChannels, FlashView<uint8_t>(kLayer3), false, 0},
     },

@@ -45,6 +45,7 @@ class Reporter:
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
         self._label: dict[str, str] = {}
+        self._other: dict[str, int] = {}  # the protocol of another version that was told
         self._links: dict[str, str] = {}
         self._failing: set[tuple[str, str]] = set()
         self._foreign: set[tuple[str, str]] = set()
@@ -58,6 +59,7 @@ class Reporter:
 
     def _tell(self, event: Event, view: TileView) -> list[tuple[str, bool]]:
         if isinstance(event, PortNews):
+            self._other.pop(event.port, None)
             return [(f"port {port_words(event)}", not event.is_open)]
         match event.sentence:
             case None if event.board_test:
@@ -65,6 +67,7 @@ class Reporter:
             case None:
                 return [(f"damaged: {printable(event.raw)}", True)]
             case HelloSentence() as hello:
+                self._other.pop(event.port, None)
                 self._label[event.port], self._links[event.port] = "", "----"
                 self._failing -= {(event.port, side) for side in SIDES}
                 self._foreign -= {(event.port, side) for side in SIDES}
@@ -76,11 +79,17 @@ class Reporter:
                     *self._foreign_news(event.port, link, view),
                     *self._health_news(event.port, link, view),
                 ]
-            case ErrorSentence() | NakSentence() | OtherVersionSentence() as complaint:
+            case OtherVersionSentence() as other:
+                return self._version_news(event.port, other)
+            case ErrorSentence() | NakSentence() as complaint:
                 return [(words(complaint), True)]
             case AckSentence() as done:
                 return [(words(done), False)]
         return []
+
+    def _version_news(self, port: str, other: OtherVersionSentence) -> list[tuple[str, bool]]:
+        before, self._other[port] = self._other.get(port), other.version
+        return [] if before == other.version else [(words(other), True)]
 
     def _label_news(self, port: str, tile: TileSentence) -> list[tuple[str, bool]]:
         before, self._label[port] = self._label.get(port), tile.label

@@ -153,13 +153,11 @@ def _cell(view: TileView, tile: int | None, now_s: float) -> Cell:
 
 
 def _colour(view: TileView) -> tuple[int, int, int]:
-    """Of the label: a digit's own, else that of the class with the greatest score."""
+    """Of the label: a digit's own, else that of the class."""
     state = view.tile
-    if state is None or not state.label:
+    if state is None or state.class_index is None:
         return (0, 0, 0)
-    classes = min(view.hello.classes if view.hello else 10, len(state.state))
-    scores = state.state[-classes:]
-    return look_of(state.label, scores.index(max(scores))).colour
+    return look_of(state.label, state.class_index).colour
 
 
 def _mark(view: TileView, side: str) -> Mark:

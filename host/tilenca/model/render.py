@@ -77,7 +77,7 @@ def render(model: Model) -> dict[Path, str]:
         keep_trailing_newline=True,
         autoescape=False,  # C++, not HTML
     )
-    widths = (("kTaps * kChannels", "kHidden1"), ("kHidden1", "kHidden2"), ("kHidden2", "kChannels"))
+    widths = (("kNeighbourhood * kChannels", "kHidden1"), ("kHidden1", "kHidden2"), ("kHidden2", "kChannels"))
     layers = []
     for number, (inputs, outputs) in enumerate(widths, 1):
         layer = packing.blocks(model, number)
@@ -87,7 +87,7 @@ def render(model: Model) -> dict[Path, str]:
                 "inputs": inputs,
                 "outputs": outputs,
                 "lines": list(_lines(layer)),
-                "narrow_only": str(all(one.is_16_bit for one in layer)).lower(),
+                "only_16_bit": str(all(one.is_16_bit for one in layer)).lower(),
                 "rounding": "kHiddenRounding" if number < len(widths) else "0",
             }
         )

@@ -1,6 +1,6 @@
 """The numbers of docs/PROTOCOL.md. Names are as in C++: `kMaxSentence` there is `MAX_SENTENCE` here."""
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 3
 KIND_STATE = 0
 # Frames between tiles (section 1).
 LINK_BAUD = 38400  # between south and north

@@ -52,8 +52,9 @@ def said(sentence: Sentence) -> str:
 def words(sentence: Sentence) -> str:
     """What a sentence says, without the tile's id and the sentence's name."""
     match sentence:
-        case TileSentence(_, uptime_ms, updates, label, links, _):
-            return f"shows {label or 'nothing'} update {updates} up {uptime_ms / 1000:.1f} s links {links}"
+        case TileSentence(_, uptime_ms, updates, label, _, margin, links, _):
+            shown = (label or "nothing") if margin is None else f"{label} margin {margin}"
+            return f"shows {shown} update {updates} up {uptime_ms / 1000:.1f} s links {links}"
         case LinkSentence():
             return _link_words(sentence)
         case HelloSentence():

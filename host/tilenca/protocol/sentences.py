@@ -41,6 +41,9 @@ class TileSentence:
     """What a tile is and shows; `label` is empty while nothing is shown.
 
     Attributes:
+        class_index: the class that the tile decided for; None while nothing is shown.
+        margin: how sure it is: the best score less the second best, in units of a message (0..254); None
+            while nothing is shown and where there is only one class.
         links: `NESW` with `-` for every silent side.
         state: the state bytes as sent to the neighbours (message + 128), one per channel.
     """
@@ -49,6 +52,8 @@ class TileSentence:
     uptime_ms: int
     updates: int
     label: str
+    class_index: int | None
+    margin: int | None
     links: str
     state: bytes
 
@@ -176,10 +181,10 @@ def format_sentence(sentence: Sentence) -> bytes:
                 f"{hello.model_id:04X},{hello.channels},{hello.classes},{hello.period_ms},{hello.updates}",
                 f"{hello.reset_cause:02X},{hello.firmware_id:08X},{hello.brightness}",
             )
-        case TileSentence(tile, uptime_ms, updates, label, links, state):
-            fields = ("TILE", tile, uptime_ms, updates, label, links, state.hex().upper())
+        case TileSentence():
+            fields = ("TILE", *list(vars(sentence).values())[:-1], sentence.state.hex().upper())
         case LinkSentence():
-            fields = ("LINK", *("" if value is None else value for value in vars(sentence).values()))
+            fields = ("LINK", *vars(sentence).values())
         case TimeSentence():
             fields = ("TIME", *vars(sentence).values())
         case ErrorSentence(tile, uptime_ms, code, text):
@@ -190,7 +195,7 @@ def format_sentence(sentence: Sentence) -> bytes:
             fields = ("NAK", tile, reason, command)
         case OtherVersionSentence(version):
             raise ValueError(f"protocol {version} is not spoken here")
-    return framed(",".join(map(str, fields)))
+    return framed(",".join("" if value is None else str(value) for value in fields))
 
 
 def _fields(*parts: str) -> re.Pattern[str]:
@@ -203,14 +208,16 @@ _WORD, _TEXT = r"([A-Z]{1,16})", r"([ -+\--~]*)"
 _HEX2, _HEX4, _HEX8 = (rf"([0-9A-F]{{{digits}}})" for digits in (2, 4, 8))
 _HELLO = _fields("HELLO", *[_NUMBER] * 2, _HEX4, *[_NUMBER] * 4, _HEX2, _HEX8, _NUMBER)
 _STATE = rf"((?:[0-9A-F]{{2}}){{1,{MAX_CHANNELS}}})"
-_TILE = _fields("TILE", *[_NUMBER] * 3, r"([!-+\--~]?)", r"([N-][E-][S-][W-])", _STATE)
+_LABEL, _LINKS, _OPTIONAL_BYTE = r"([!-+\--~]?)", r"([N-][E-][S-][W-])", r"(\d{0,3})"
+_TILE = _fields("TILE", *[_NUMBER] * 3, _LABEL, *[_OPTIONAL_BYTE] * 2, _LINKS, _STATE)
 _LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
 _TIME = _fields("TIME", *[_NUMBER] * 7)
 _ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
 _ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")
 _NAK = _fields("NAK", _NUMBER, _WORD, _TEXT)
-# Sentences of other versions: any greeting, and the link report of version 1, for who joins later.
+# Sentences of other versions, in case the greeting was missed: TILE of versions 1 and 2, LINK of version 1.
 _OTHER_HELLO = re.compile(rf"HELLO,{_NUMBER},{_NUMBER}(?:,.*)?")
+_TILE_2 = _fields("TILE", *[_NUMBER] * 3, _LABEL, _LINKS, _STATE)
 _LINK_1 = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL)
 
 
@@ -242,10 +249,17 @@ def _hello(text: str) -> Sentence | None:
 
 
 def _tile(text: str) -> Sentence | None:
+    if found := _TILE_2.fullmatch(text):
+        return OtherVersionSentence(2, int(found[1]))
     if (found := _TILE.fullmatch(text)) is None:
         return None
-    tile, uptime_ms, updates, label, links, state = found.groups()
-    return TileSentence(int(tile), int(uptime_ms), int(updates), label, links, bytes.fromhex(state))
+    tile, uptime_ms, updates, label, decided, margin, links, state = found.groups()
+    if bool(label) != bool(decided) or (margin and not decided):
+        return None
+    return TileSentence(
+        int(tile), int(uptime_ms), int(updates), label, int(decided) if decided else None,
+        int(margin) if margin else None, links, bytes.fromhex(state),
+    )  # fmt: skip
 
 
 def _link(text: str) -> Sentence | None:

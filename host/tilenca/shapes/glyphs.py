@@ -1,6 +1,6 @@
 """What a tile can show: characters on a 7-segment digit, and the colour of each class.
 
-A glyph is a bit mask of segments, bit 0 = a ... bit 6 = g, bit 7 = dp:
+A glyph is a bit mask of segments, bit 0 = a ... bit 6 = g, bit 7 = dp::
 
      aaa
     f   b

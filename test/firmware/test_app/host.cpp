@@ -1,23 +1,26 @@
 #include <doctest/doctest.h>
 
-#include <string.h>
-
 #include "../support.h"
 #include "app/appearance.h"
 #include "app/host.h"
+#include "eeprom.h"
 #include "lines.h"
 
 using namespace tilenca;
+using test::Eeprom;
 using test::line_of;
+using test::Memory;
+using test::memory_of;
 using test::Numbers;
 using test::RandomModel;
+using test::Store;
 using test::text_of;
 
 namespace {
 
 constexpr Settings kDefaults = {0, 100, 0, 255};
 
-// A tile, what its host says, and an EEPROM that may be broken.
+// A tile, what its host says, and an EEPROM.
 struct Fixture {
     Numbers numbers{3};
     RandomModel random{6, 12, 10, 3, numbers, 30};
@@ -25,27 +28,22 @@ struct Fixture {
     Tile tile{model, {7, 100, 0, 255}, 0};
     const Boot boot{1, 0x1234ABCD};
     Host host{kDefaults, boot};
-    bool broken = false, held = false;
-    uint8_t broken_block = 0;
+    Memory memory = memory_of({7, 100, 0, 255});
+    Store store{Eeprom(&memory)};
     uint32_t now_ms = 500;
-    int writes = 0;
 
-    // Everything the tile answers, in one text.
+    // Everything the tile answers, in one text. As in the main loop: bytes wait while EEPROM is written.
     std::string answers(const std::vector<uint8_t>& bytes) {
         std::string text;
-        for (uint8_t byte : bytes) {
+        size_t at = 0;
+        const auto read = [&](uint8_t* byte) { return at < bytes.size() && (*byte = bytes[at++], true); };
+        for (bool answered = true; answered || at < bytes.size();) {
             Sentence sentence;
-            Host::Result result = host.receive(byte, &tile, now_ms, &sentence);
-            if (result == Host::Result::Store) {
-                ++writes;
-                uint8_t kept[2][kSettingsSize];
-                memcpy(kept[0], host.block(), kSettingsSize);
-                memcpy(kept[1], host.block(), kSettingsSize);
-                kept[broken_block][5] ^= broken;
-                held = host.stored(kept[0], kept[1], &tile, &sentence);
-                result = Host::Result::Answer;
+            answered = host.answer(store, read, &tile, now_ms, &sentence);
+            text += answered ? text_of(sentence) : "";
+            while (store.writing()) {
+                answered = true;
             }
-            text += result == Host::Result::Answer ? text_of(sentence) : "";
         }
         return text;
     }
@@ -81,10 +79,7 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     CHECK(tile.settings().brightness == 9);
     answer("SET,updates,65535");
     CHECK(tile.settings().updates == 65535);
-    CHECK(writes == 6);
-    Settings kept;
-    CHECK(parse_settings(host.block(), &kept));
-    CHECK(kept.tile_id == 9);
+    CHECK(memory.bytes == memory_of({9, 100, 65535, 9}).bytes);
 }
 
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
@@ -95,23 +90,34 @@ TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
         CHECK(answer(wrong) == line_of("a value out of range"));
     }
     CHECK(tile.settings().period_ms == 100);
-    CHECK(writes == 0);
+    CHECK(memory.writes == 0);
 }
 
 TEST_CASE_FIXTURE(Fixture,
                   "an EEPROM that does not keep what it is given is told, and the old settings stay") {
     answer("SET,brightness,9");
-    CHECK(held);
-    broken = true;
-    for (broken_block = 0; broken_block < 2; ++broken_block) {
+    const auto before = memory.bytes;
+    for (const int period_at : {4, kSettingsSize + 4}) {
+        memory.worn = period_at;
         CHECK(answer("SET,period,20") == line_of("an EEPROM that does not keep"));
-        CHECK_FALSE(held);
         CHECK(tile.settings().period_ms == 100);
-        Settings back; // what is to be written back
-        CHECK(parse_settings(host.block(), &back));
-        CHECK(back.period_ms == 100);
-        CHECK(back.brightness == 9);
+        CHECK(memory.bytes == before);
     }
+}
+
+TEST_CASE_FIXTURE(Fixture, "commands that come while EEPROM is being written are answered after it") {
+    std::vector<uint8_t> all;
+    for (const char* body : {"SET,id,9", "SET,period,20", "RESTART"}) {
+        Sentence line;
+        line.begin(body);
+        line.end();
+        all.insert(all.end(), line.bytes(), line.bytes() + line.size());
+    }
+    const std::string text = answers(all);
+    CHECK(text.find("$ACK,9,SET,id,9*") == 0);
+    CHECK(text.find("$ACK,9,SET,period,20*") < text.find("$ACK,9,RESTART*"));
+    CHECK(text.find("$ACK,9,RESTART*") != std::string::npos);
+    CHECK(memory.bytes == memory_of({9, 20, 0, 255}).bytes);
 }
 
 TEST_CASE_FIXTURE(Fixture, "what cannot be obeyed is answered too") {
@@ -134,7 +140,7 @@ TEST_CASE_FIXTURE(Fixture, "restart is as the button") {
     CHECK(tile.shown() == Tile::kNothing);
 }
 
-TEST_CASE_FIXTURE(Fixture, "a face blinks as long as told, across the wrap of the clock") {
+TEST_CASE_FIXTURE(Fixture, "a display blinks as long as told, across the wrap of the clock") {
     now_ms = 0xFFFFF000;
     CHECK_FALSE(host.blinking(now_ms));
     CHECK(answer("BLINK,5") == line_of("answer to blink"));

@@ -73,6 +73,26 @@ TEST_CASE_FIXTURE(Fixture, "a tile says what it shows, which links live, and its
     CHECK(text_of(sentence) == line_of("tile after its first update"));
 }
 
+TEST_CASE_FIXTURE(Fixture,
+                  "a decision is told until the tile starts again, and that of one class has no margin") {
+    Tile tile(model, {7, 100, 0, 255}, 0);
+    const auto told = [&] {
+        Sentence sentence;
+        write_tile(tile, 5, &sentence);
+        return text_of(sentence);
+    };
+    end_period(tile, 0);
+    CHECK(told().find("$TILE,7,5,1,4,0,30,----,") == 0);
+    tile.restart();
+    CHECK(told().find("$TILE,7,5,0,,,,----,") == 0);
+    const Model single = {0xBEEF, 1, model.network, FlashView<Look>(looks.data() + 1)};
+    Tile alone(single, {7, 100, 0, 255}, 0);
+    end_period(alone, 0);
+    Sentence sentence;
+    write_tile(alone, 5, &sentence);
+    CHECK(text_of(sentence).find("$TILE,7,5,1,b,0,,----,") == 0);
+}
+
 TEST_CASE_FIXTURE(Fixture, "a link tells its counters and its age") {
     Tile tile(model, {7, 100, 0, 255}, 0);
     Sentence sentence;
@@ -104,14 +124,18 @@ TEST_CASE_FIXTURE(Fixture, "what is wrong is said in words") {
 
 TEST_CASE("the longest sentences fit") {
     Numbers numbers(1);
-    const RandomModel random(kMaxChannels, 3, 3, 10, numbers, 9);
+    const RandomModel random(kMaxChannels, 3, 3, kMaxChannels, numbers, 9);
     const Model model = random.model(0xFFFF);
-    const Tile tile(model, {255, 10000, 65535, 255}, 0);
+    Tile tile(model, {255, 10, 65535, 255}, 0);
     Sentence sentence;
+    for (uint32_t now_ms = 0; tile.updates() < 20; ++now_ms) {
+        tile.tick(now_ms);
+    }
     write_tile(tile, 4294967295, &sentence);
-    CHECK(sentence.size() <= kMaxSentence);
+    // Its number of updates may have eight more digits, and its class and margin two or three.
+    CHECK(sentence.size() + 8 + 3 <= kMaxSentence);
     CHECK(text_of(sentence).substr(sentence.size() - 2) == "\r\n");
-    CHECK(text_of(sentence).find(",----,C08080") != std::string::npos);
+    CHECK(text_of(sentence).find(",----,") != std::string::npos);
     const size_t state_digits = text_of(sentence).find('*') - text_of(sentence).rfind(',') - 1;
     CHECK(state_digits == 2 * kMaxChannels);
     Tile heard(model, {255, 10000, 65535, 255}, 0);

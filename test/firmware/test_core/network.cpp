@@ -64,7 +64,7 @@ void update(Cell& cell, const int8_t* const (&neighbours)[kSides]) {
 // One layer of one output, for sums that are easy to see.
 int8_t hidden_output_of(int8_t weight, int16_t bias, int8_t input) {
     const LayerStream stream(1, 1, &weight, &bias);
-    int8_t outputs[kPassOutputs];
+    int8_t outputs[kBlockOutputs];
     const int16_t sum = hidden_outputs(stream.layer(), {&input, input}, 0, 1, outputs);
     CHECK(sum == outputs[0]); // those that the layer does not have are zero
     return outputs[0];
@@ -200,7 +200,7 @@ TEST_CASE("the best class has the greatest stored score, the first among equals"
         const Network network = {hidden1.layer(), hidden2.layer(), output.layer()};
         Cell cell(network);
         update(cell, {nullptr, nullptr, nullptr, nullptr});
-        return cell.best_class(static_cast<uint8_t>(scores.size()));
+        return cell.decide(static_cast<uint8_t>(scores.size())).best;
     };
     CHECK(best_of({0, 0, 0}) == 0);
     CHECK(best_of({5, 4, 3}) == 0);
@@ -209,10 +209,27 @@ TEST_CASE("the best class has the greatest stored score, the first among equals"
     CHECK(best_of({-9, -8, -7}) == 2);
 }
 
+TEST_CASE("a decision says how far the best class is ahead of the second best, rounded to a message") {
+    const auto margin_of = [](std::vector<int16_t> scores) {
+        return decide(scores.data(), static_cast<uint8_t>(scores.size())).margin;
+    };
+    CHECK(margin_of({7, 7}) == 0);
+    CHECK(margin_of({63, 0}) == 0);
+    CHECK(margin_of({64, 0}) == 1);
+    CHECK(margin_of({0, 191}) == 1);
+    CHECK(margin_of({0, 192}) == 2);
+    CHECK(margin_of({1280, 9000, 2560, -16000}) == 50);
+    CHECK(margin_of({-16000, 2560, 9000, 1280}) == 50);
+    CHECK(margin_of({9000, 2560, 1280}) == 50);
+    CHECK(margin_of({kStateMax, -kStateMax}) == 254);
+    CHECK(margin_of({-kStateMax, -kStateMax, kStateMax}) == 254);
+    CHECK(margin_of({5}) == Decision::kNoMargin);
+}
+
 TEST_CASE("the exported model is whole") {
     CHECK(model::kModel.id == model::kModelId);
     CHECK(model::kModel.network.channels() == model::kChannels);
-    CHECK(model::kModel.network.hidden1.inputs == kTaps * model::kChannels);
+    CHECK(model::kModel.network.hidden1.inputs == kNeighbourhood * model::kChannels);
     CHECK(model::kModel.network.hidden2.inputs == model::kHidden1);
     CHECK(model::kModel.network.output.inputs == model::kHidden2);
     CHECK(model::kModel.classes == model::kClasses);

@@ -34,7 +34,7 @@ static void run_assembly() {
 }
 
 static void run_portable() {
-    static int8_t hidden1[kHidden1 + kPassOutputs], hidden2[kHidden2 + kPassOutputs];
+    static int8_t hidden1[kHidden1 + kBlockOutputs], hidden2[kHidden2 + kBlockOutputs];
     const Network& network = kModel.network;
     hidden_outputs<OneCell>(network.hidden1, inputs, 0, kHidden1, hidden1);
     hidden_outputs<OneCell>(network.hidden2, hidden1, 0, kHidden2, hidden2);
@@ -54,11 +54,11 @@ static void layer(const float* weights, const float* biases, const float* in, ui
 }
 
 static void run_float() {
-    static float in[kTaps * kChannels], hidden1[kHidden1], hidden2[kHidden2], out[kChannels];
-    for (uint8_t i = 0; i < kTaps * kChannels; ++i) {
+    static float in[kNeighbourhood * kChannels], hidden1[kHidden1], hidden2[kHidden2], out[kChannels];
+    for (uint8_t i = 0; i < kNeighbourhood * kChannels; ++i) {
         in[i] = inputs[i] * (1 / 64.0f);
     }
-    layer(kFloatW1, kFloatB1, in, kTaps * kChannels, hidden1, kHidden1, false);
+    layer(kFloatW1, kFloatB1, in, kNeighbourhood * kChannels, hidden1, kHidden1, false);
     layer(kFloatW2, kFloatB2, hidden1, kHidden1, hidden2, kHidden2, false);
     layer(kFloatW3, kFloatB3, hidden2, kHidden2, out, kChannels, true);
     state[0] = out[0];
@@ -66,7 +66,7 @@ static void run_float() {
 #endif
 
 static void time(void (*run)(), const int8_t* given, const int16_t* states) {
-    memcpy_P(inputs, given, kTaps * kChannels);
+    memcpy_P(inputs, given, kNeighbourhood * kChannels);
     memcpy_P(state, states, sizeof state);
     begins();
     run();

@@ -1,4 +1,4 @@
-#include "board/face.h"
+#include "board/display.h"
 
 #include <avr/io.h>
 
@@ -9,7 +9,7 @@
 namespace tilenca {
 namespace board {
 
-void face_begin() {
+void display_begin() {
     for (Pin pin : kSegments) {
         make_output(pin);
     }
@@ -19,7 +19,7 @@ void face_begin() {
     make_output(kRed);
     make_output(kGreen);
     make_output(kBlue);
-    // Phase-correct 8-bit PWM at 490 Hz: unlike fast PWM it is fully dark at 0.
+    // Phase-correct 8-bit PWM at 490 Hz, which unlike fast PWM is fully dark at 0.
     TCCR2A = 1 << WGM20;
     TCCR2B = 1 << CS22;
     TCCR3A = 1 << WGM30;
@@ -30,13 +30,13 @@ void face_begin() {
 
 namespace {
 
-// The compare value that gives `duty` of 255, at least 1, on a fast PWM timer of so many counts.
+// The compare value for a duty of 1..255 on a fast PWM timer of `counts` counts.
 uint16_t compare_of(uint8_t duty, uint16_t counts) {
     return static_cast<uint16_t>(static_cast<uint32_t>(duty) * counts / 255 - 1);
 }
 
-// The output of a segment's pin: the register that joins it to its timer, and by which bit. No two share a
-// compare unit with each other or with a colour. The decimal point's timer is timer 0, which has other work.
+// The register and the bit that connect a segment's pin to a timer. Each has a compare unit of its own. The
+// decimal point's pin is on timer 0, which is used otherwise (scratch.h).
 struct Dimmer {
     volatile uint8_t* control;
     uint8_t bit;
@@ -92,7 +92,7 @@ void show_segments(uint8_t segments, uint8_t brightness) {
 }
 
 void show_colour(uint8_t red, uint8_t green, uint8_t blue) {
-    // Red's timer runs at the south link's bit time and would blink shortly even at duty 0: off is off.
+    // Red's timer runs at the south link's bit time, and at duty 0 still gives a short pulse per bit.
     if (red == 0) {
         TCCR1A &= ~(1 << COM1A1);
     } else {

@@ -1,0 +1,64 @@
+"""Sphinx's configuration. `make docs` builds the site; nothing here may need the network.
+
+The source folder is the root of the project, so that a link between documents works in a plain file viewer
+and on the site alike, also where it leads out of docs/.
+"""
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "host"), str(ROOT / "tools")]
+
+from tilenca import __version__  # noqa: E402  # found by the line above
+
+project = "tilenca"
+author = "the tilenca authors"
+version = release = __version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "docs.docstrings",
+    "docs.command_pages",
+    "docs.module_pages",
+]
+root_doc = "docs/index"
+include_patterns = ["docs/**", "models/*/README.md", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+exclude_patterns = [".*", "build", "firmware", "host", "test", "tools", "tiles", "**/node_modules"]
+
+myst_heading_anchors = 4
+myst_enable_extensions = ["attrs_inline"]
+
+html_theme = "furo"
+html_title = f"tilenca {version}"
+html_extra_path = ["root"]  # index.html, which leads to the root document
+html_copy_source = False
+html_show_copyright = False
+
+highlight_language = "text"  # of a block that names no language
+
+# Docstrings set code in single backquotes, as the rest of the project does.
+default_role = "literal"
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+napoleon_attr_annotations = False  # the signature of a dataclass has them
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True, "show-inheritance": True}
+autosummary_generate = False  # the tables only; the modules' texts are on the same page
+# The demo's set-up has none of these.
+autodoc_mock_imports = [name for name in ("torch", "matplotlib", "PIL") if find_spec(name) is None]
+
+# References to other projects would need their inventories from the network.
+nitpick_ignore_regex = [
+    ("py:.*", rf"({'|'.join(names)})(\..*)?")
+    for names in [
+        ["argparse", "collections", "concurrent", "contextlib", "ctypes", "enum", "json", "os", "pathlib"],
+        ["queue", "random", "re", "subprocess", "threading", "types", "typing", "_io", "io"],
+        ["jinja2", "matplotlib", "np", "numpy", "PIL", "npt", "rich", "serial", "torch"],
+    ]
+]
