@@ -3,7 +3,9 @@
 import os
 import signal
 import tempfile
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 from support.avr import arduino, arduino_core, avr, talk
@@ -27,3 +29,24 @@ def pytest_configure() -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
+
+
+@pytest.fixture(scope="session")
+def two_shapes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shape file that is trained in seconds."""
+    path = tmp_path_factory.mktemp("shapes") / "two.toml"
+    path.write_text(
+        '[[shape]]\nlabel = "1"\ngrid = """\n#\n#\n#\n"""\n'
+        '[[shape]]\nlabel = "7"\ngrid = """\n##\n.#\n.#\n"""\n'
+    )
+    return path
+
+
+@pytest.fixture(scope="session")
+def trained_model(two_shapes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model trained on them with seed 5, not interrupted."""
+    from support.training import train  # imports torch, which most tests do without
+
+    out = tmp_path_factory.mktemp("models") / "model"
+    assert train(two_shapes, out) == 0
+    return out

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from support.heard_fleet import STATE, HeardFleet
 from support.scripted_port import HELLO
 from tilenca.fleet.events import REMEDY, News, Reporter, clock_text, news_line
 from tilenca.fleet.state import Event, Fleet, PortNews
@@ -9,8 +10,10 @@ from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
     AckSentence,
     ErrorSentence,
+    HelloSentence,
     LinkSentence,
     NakSentence,
+    OtherVersionSentence,
     Sentence,
     TileSentence,
 )
@@ -101,3 +104,24 @@ def test_a_line_names_time_tile_and_port() -> None:
 def test_milliseconds_are_rounded_with_their_second() -> None:
     assert clock_text(59.9996).endswith(":00.000")
     assert clock_text(59.9994).endswith(":59.999")
+
+
+def test_the_log_tells_what_changed_and_nothing_twice() -> None:
+    lab = HeardFleet()
+    lab.open("a")
+    for label in ("4", "4", "9", "9"):
+        lab.say("a", TileSentence(1, 100, 1, label, int(label), 30, "----", STATE))
+    lab.say("a", HelloSentence(3, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255))
+    lab.take(Heard(1.0, "a", b"\x1bnoise", None))
+    heads = [text.split(":")[0] for text in lab.news]
+    assert heads == ["port open", "shows 4", "shows 9, before 4", "started", "damaged"]
+    assert "watchdog" in lab.news[3]
+
+
+def test_a_tile_of_another_version_is_told_once_until_it_starts_again_as_ours() -> None:
+    lab = HeardFleet()
+    lab.open("a")
+    lab.say("a", *[OtherVersionSentence(2, 1)] * 3)
+    assert [text for text in lab.news if "protocol 2" in text] == [OtherVersionSentence(2, 1).remedy]
+    lab.say("a", HelloSentence(3, 1, 0, 21, 10, 20, 0, 8, 0xABCD, 255), OtherVersionSentence(2, 1))
+    assert len([text for text in lab.news if "these tools speak" in text]) == 2

@@ -1,7 +1,11 @@
 """How well a link does lately, from the counters that a tile reports."""
 
+from support.heard_fleet import link, three_in_an_l
+from tilenca.fleet.grid import Grid, Mark
 from tilenca.fleet.link_health import WINDOW_MS, LinkHealth
-from tilenca.protocol.sentences import LinkSentence
+from tilenca.protocol.sentences import (
+    LinkSentence,
+)
 
 
 def report(uptime_ms: int, received: int, lost: int = 0, foreign: int = 0) -> LinkSentence:
@@ -47,3 +51,27 @@ def test_another_model_is_seen_while_its_frames_come() -> None:
     assert health(report(1000, 0, foreign=9), report(2000, 0, foreign=12)).foreign
     gone = [report(2000 + after, 0, foreign=12) for after in range(0, WINDOW_MS + 1, 1000)]
     assert not health(report(1000, 0, foreign=9), *gone).foreign
+
+
+def test_health_is_of_the_last_seconds_and_is_told_before_the_link_is_gone() -> None:
+    lab = three_in_an_l()
+    received = lost = 0
+    for second in range(40):
+        received, lost = received + (10 if second < 20 else 8), lost + (0 if second < 20 else 2)
+        lab.say("a", link(1, "E", 2, 1000 * second, received, lost))
+    assert [text for text in lab.news if "failing" in text] == [
+        "link E is failing: 12% of the frames get lost"
+    ]
+    assert Grid().cells(lab.fleet, 1.0)[0, 0].marks["E"] is Mark.FAILING
+    for second in range(40, 55):
+        received += 10
+        lab.say("a", link(1, "E", 2, 1000 * second, received, lost))
+    assert lab.news[-1] == "link E is well again"
+
+
+def test_health_begins_anew_when_a_tile_restarts() -> None:
+    health = LinkHealth()
+    assert health.good is None
+    for uptime_ms, received, lost in ((0, 100, 0), (1000, 100, 100), (500, 5, 0), (500 + WINDOW_MS, 15, 0)):
+        health.take(link(1, "E", 2, uptime_ms, received, lost))
+    assert health.good == 1.0
