@@ -3,7 +3,6 @@
 import os
 import re
 import sys
-import termios
 import threading
 import tty
 from collections.abc import Iterator
@@ -56,10 +55,10 @@ def stderr_on_terminal(monkeypatch: pytest.MonkeyPatch, width: int = 100) -> Ite
     """The standard error of this process is a terminal while the block runs; then its text is complete."""
     master, slave = openpty()
     tty.setraw(slave)
-    termios.tcsetwinsize(slave, (24, width))
-    for name in ("COLUMNS", "LINES", "NO_COLOR"):
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    # rich asks the terminal of the process for its size, or these; the stream it writes on it does not ask.
+    for name, value in {"COLUMNS": str(width), "LINES": "24", "TERM": "xterm-256color"}.items():
+        monkeypatch.setenv(name, value)
     screen = Screen(master)
     try:
         with os.fdopen(slave, "w") as stream, monkeypatch.context() as patch:
