@@ -21,7 +21,7 @@ unexport PLATFORMIO_CORE_DIR
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
-	imports types budgets docs format train bench clean
+	imports types budgets sanitize docs format train bench wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -38,8 +38,9 @@ demo: setup-demo ## build the firmware and let emulated tiles name the ten digit
 	@$(TILENCA) emulate --shape all
 	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch"
 
-test: setup-test ## run every test: the firmware's core on this machine, then host and emulator
+test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
+	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest -n auto --dist worksteal
 
@@ -54,7 +55,8 @@ format-check: setup-check
 lint: setup-check
 	@.venv/bin/ruff check
 	@$(CPPCHECK) --std=c++14 -I firmware/include firmware/src/core firmware/src/app
-	@$(CPPCHECK) --std=c++17 -I tools/emulator/src -I firmware/include tools/emulator tools/simulator tools/training
+	@$(CPPCHECK) --std=c++17 -I tools -I tools/emulator/src -I firmware/include $(patsubst %,-I %,$(wildcard tools/*/include)) \
+		tools/c_api tools/emulator tools/simulator tools/rollout_kernel
 	@PLATFORMIO_BUILD_DIR=build/strict PLATFORMIO_BUILD_SRC_FLAGS=-Werror $(PIO) run -s -e $(ENV) -e board_test
 
 imports: setup-check ## check which room may import from which
@@ -67,6 +69,9 @@ budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware wi
 	@$(PIO) run -s -e $(ENV)
 	@$(TILENCA) export --check
 	@$(TOOL) firmware.budgets $(ELF)
+
+sanitize: setup-test ## run tests of the C++ libraries with sanitizers for memory and undefined behaviour
+	@sh tools/c_api/sanitize.sh
 
 docs: setup-docs ## build the documentation site into build/docs; warnings and broken links are errors
 	@.venv/bin/sphinx-build -q -E -n -W --keep-going -c tools/docs -d build/docs/.doctrees . build/docs
@@ -89,6 +94,11 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 
+wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
+	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) export --check >&2
+	@$(TOOL) release.wheel
+
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio build/emulator build/simulator build/training build/strict build/test build/models build/docs
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

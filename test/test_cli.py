@@ -69,7 +69,7 @@ def test_an_environment_that_lacks_a_module_is_to_be_set_up_not_activated(
     activate = tmp_path / ".venv" / "bin" / "activate"
     activate.parent.mkdir(parents=True)
     activate.touch()
-    monkeypatch.setattr(paths, "ROOT", tmp_path)
+    monkeypatch.setattr(paths, "CHECKOUT", tmp_path)
     monkeypatch.setattr(devices, "run", lambda _: importlib.import_module("no_such_module"))
     for prefix, remedy in (("/usr", f". {activate}"), (f"{tmp_path}/.venv", f"make -C {tmp_path} setup")):
         monkeypatch.setattr(sys, "prefix", prefix)

@@ -13,11 +13,13 @@ from pathlib import Path
 from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
+from tilenca.base.project import install_remedy
 from tilenca.base.signals import ending_like_ctrl_c
 from tilenca.base.stdio import check_streams, finish_streams, warn
 from tilenca.commands.arguments import Parser
 
 COMMANDS: dict[str, tuple[str, str]] = {
+    "new": ("tilenca.commands.new", "make a project of your own: shapes, firmware, builds"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
     "plot": ("tilenca.commands.plot", "draw how training went, or a film of what tiles show"),
@@ -87,11 +89,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _activation() -> str:
     """What gives this Python the modules: another Python that has them, or if it is that one, its setup."""
-    environment = paths.ROOT / ".venv"
+    if paths.CHECKOUT is None:
+        return install_remedy()
+    environment = paths.CHECKOUT / ".venv"
     activate = environment / "bin" / "activate"
     if activate.exists() and Path(sys.prefix).resolve() != environment.resolve():
         return f". {activate}"
-    return f"make -C {paths.ROOT} setup"
+    return f"make -C {paths.CHECKOUT} setup"
 
 
 def _run(arguments: list[str]) -> int:

@@ -247,3 +247,11 @@ def test_the_exporter_says_which_sums_have_16_bits(
     assert "sums of 16 bits: layer 2 0..5, layer 3 0..4; of 24 bits: all others\n" in capsys.readouterr().out
     assert run("--model", tmp_path / "small", "--out", firmware, "--json") == 0
     assert json.loads(capsys.readouterr().out)["outputs_in_16_bits"] == [0, 6, 5]
+
+
+def test_without_a_project_it_says_how_to_make_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(paths, "PROJECT", None)
+    assert run("--model", paths.DEFAULT_MODEL) == 4
+    assert "make one: tilenca new DIR" in capsys.readouterr().err

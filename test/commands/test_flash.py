@@ -141,7 +141,7 @@ def test_what_was_missing_is_flashed_with_those_that_failed(firmware: Path, tmp_
 def test_what_to_do_is_known_before_anything_is_built(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(paths, "ROOT", tmp_path)  # no project there: a build would fail
+    monkeypatch.setattr(paths, "PROJECT", tmp_path)  # no project there: a build would fail
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     with StandIn() as board:
         assert main(["flash", "--only", "x", "--port", board.port]) == 2
@@ -165,7 +165,7 @@ def test_an_interrupt_before_a_board_is_begun_is_one_like_any(
 def test_a_tile_that_is_wanted_and_missing_is_a_row_and_remembered(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(paths, "ROOT", tmp_path)  # no project there: a build would fail
+    monkeypatch.setattr(paths, "PROJECT", tmp_path)  # no project there: a build would fail
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     gone = f"port:{tmp_path}/gone"
     file = tmp_path / "tiles.toml"

@@ -59,6 +59,18 @@ def test_a_mark_that_nobody_understands_is_refused(mark: str, tmp_path: Path) ->
         block_of(f"{mark}```sh\ntilenca devices\n```\n", tmp_path)
 
 
+def test_a_reader_goes_into_a_folder_and_stays_there(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    block = "```python\nfrom pathlib import Path\nassert Path('digits.toml').exists()\n```\n"
+    page.write_text(f"```sh\ncd shapes\n```\n\n{block}", encoding="utf-8")
+    (tmp_path / "clone").mkdir()
+    with Reader(tmp_path / "clone") as reader:
+        for part in blocks(page):
+            reader.follow(part)
+        with pytest.raises(AssertionError, match=r"page\.md:1"):
+            reader.follow(next(blocks(page)))  # there is no shapes/shapes
+
+
 def test_a_block_may_be_a_file(tmp_path: Path) -> None:
     assert block_of("```toml\n# mine.toml: two letters\na = 1\n```\n", tmp_path).file_name == "mine.toml"
     assert block_of("```toml\na = 1\n```\n", tmp_path).file_name is None

@@ -8,8 +8,8 @@ from support.avr import Compile, compile_differential, run_tool
 
 
 @pytest.fixture(scope="module")
-def differential(library: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return compile_differential(library, tmp_path_factory.mktemp("differential"))
+def differential(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return compile_differential(tmp_path_factory.mktemp("differential"))
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -3,7 +3,6 @@
 import random
 import re
 from contextlib import suppress
-from ctypes import CDLL, c_char, c_char_p, c_double, c_int, c_uint, c_uint64, c_void_p
 from pathlib import Path
 
 import pytest
@@ -11,7 +10,8 @@ import pytest
 from support.avr import Compile, hex_record, run_tool
 from tilenca.base.errors import BuildError, TilencaError, UsageError
 from tilenca.base.paths import FIRMWARE_ELF
-from tilenca.emulator import LIBRARY, Array
+from tilenca.emulator import Array
+from tilenca.emulator.library import library
 
 PROGRAM = "EEMEM uint8_t stored = 0x42; int main(void) { result[0] = 7; for (;;) { } }"
 
@@ -174,13 +174,11 @@ def test_arguments_that_do_not_fit_are_refused(avr: Compile) -> None:
     ("port", "bit"), [(b"I", 0), (b"M", 0), (b"b", 5), (b"@", 0), (b"\xff", 0), (b"B", 8)]
 )
 def test_pins_that_do_not_exist_are_refused(avr: Compile, port: bytes, bit: int) -> None:
-    library = CDLL(str(LIBRARY))
-    library.tilenca_last_error.restype = c_char_p
-    library.tilenca_tile_duty.restype = c_double
-    array, pin = Array(avr(PROGRAM)), (c_char(port), c_uint(bit))
-    tile = (c_void_p(array.handle), c_uint(0))
-    assert library.tilenca_tile_pin(*tile, *pin) == -1
-    assert library.tilenca_tile_duty(*tile, *pin) == -1
-    assert library.tilenca_tile_hold_pin(*tile, *pin, c_int(0)) == -1
-    assert library.tilenca_tile_push_edge(*tile, *pin, c_uint64(100), c_int(0)) == -1
-    assert b"no pin P" in library.tilenca_last_error()
+    emulator = library()
+    array = Array(avr(PROGRAM))
+    pin = (array.handle, 0, port, bit)
+    assert emulator.lib.tilenca_tile_pin(*pin) == -1
+    assert emulator.lib.tilenca_tile_duty(*pin) == -1
+    assert emulator.lib.tilenca_tile_hold_pin(*pin, 0) == -1
+    assert emulator.lib.tilenca_tile_push_edge(*pin, 100, 0) == -1
+    assert "no pin P" in emulator.last_error()

@@ -133,8 +133,8 @@ MISTAKES = [
 
 
 @pytest.fixture(scope="module")
-def differential(library: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return compile_differential(library, tmp_path_factory.mktemp("differential"))
+def differential(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return compile_differential(tmp_path_factory.mktemp("differential"))
 
 
 @pytest.mark.parametrize("mistake", MISTAKES, ids=[mistake.what for mistake in MISTAKES])

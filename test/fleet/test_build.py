@@ -48,7 +48,7 @@ def _runs(process: Path) -> bool:
 def test_a_failed_build_shows_its_output_and_exits_with_4(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(paths, "ROOT", tmp_path)  # no project there
+    monkeypatch.setattr(paths, "PROJECT", tmp_path)  # no project there
     with StandIn() as board:
         assert main(["flash", "--port", board.port]) == 4
         assert not board.heard.is_set()

@@ -96,7 +96,7 @@ def test_nothing_is_faster_than_the_firmwares_shortest_period() -> None:
 
 def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cost.firmware_period_ms() == 20
-    monkeypatch.setattr(paths, "ROOT", tmp_path)
+    monkeypatch.setattr(paths, "PROJECT", tmp_path)
     with pytest.raises(BuildError, match=r"platformio\.ini: no build_flags"):
         cost.firmware_period_ms()
     ini = tmp_path / "platformio.ini"

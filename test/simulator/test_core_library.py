@@ -1,16 +1,13 @@
 """The firmware's core on the host against the arithmetic of docs/PROTOCOL.md, written out in numpy."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from firmware.synthetic_models import network, random_network, uniform_network
 from support.reference_network import reference
-from tilenca.base.errors import BuildError
 from tilenca.model.file import Dimensions, Model
-from tilenca.simulator import core_library
+from tilenca.simulator import core_library, rollout_library
 
 SEED_STATE = 8192
 
@@ -55,6 +52,16 @@ def test_nothing_wraps_at_the_extremes(weight: int, bias: int, message: int, sta
     np.testing.assert_array_equal(
         core_library.update_cells(model, states, inputs), reference(model, states, inputs)
     )
+
+
+def test_constants_are_those_of_the_library() -> None:
+    lib = core_library.library().lib
+    assert (lib.TILENCA_TICKS, lib.TILENCA_UNITS_PER_TICK * lib.TILENCA_TICKS) == (
+        rollout_library.TICKS_PER_STEP,
+        rollout_library.UNITS_PER_STEP,
+    )
+    faults = [getattr(lib, f"TILENCA_FAULT_{name.upper()}") for name in rollout_library.FAULTS]
+    assert faults == list(range(len(rollout_library.FAULTS)))
 
 
 WIDTHS = [16, 8, 4]
@@ -154,16 +161,3 @@ def test_arrays_that_do_not_fit_the_model_are_refused(
     model = random_network(Dimensions(4, 6, 6), 30)
     with pytest.raises(ValueError, match="need"):
         core_library.update_cells(model, states, inputs)
-
-
-@pytest.mark.parametrize("content", [None, b"not a library"])
-def test_a_missing_or_damaged_library_names_the_remedy(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, content: bytes | None
-) -> None:
-    library = tmp_path / "libtilenca_core.so"
-    if content is not None:
-        library.write_bytes(content)
-    monkeypatch.setattr(core_library, "LIBRARY", library)
-    model = random_network(Dimensions(4, 6, 6), 30)
-    with pytest.raises(BuildError, match=f"{library}.*make setup"):
-        core_library.update_cells(model, np.zeros((1, 4), np.int16), np.zeros((1, 20), np.int8))

@@ -1,5 +1,6 @@
 """Fixtures of the emulator's tests: AVR programs compiled on the spot, and what they run on."""
 
+import fcntl
 import re
 import shutil
 import subprocess
@@ -47,11 +48,21 @@ def hex_record(kind: int, address: int, data: bytes) -> str:
     return f":{(body + bytes([-sum(body) & 0xFF])).hex().upper()}\n"
 
 
-def compile_differential(library: Path, directory: Path) -> Path:
-    """The program that runs our core and libsimavr side by side."""
+def build_target(name: str) -> None:
+    """Brings a target of the C++ release build up to date; tests in other processes wait meanwhile."""
+    build = ROOT / "build" / "release"
+    with (build / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        run_tool("cmake", "--build", build, "--target", name)
+
+
+def compile_differential(directory: Path) -> Path:
+    """The program that runs our core and libsimavr side by side, and looks inside both."""
+    build_target("emulator_inside")
     program, source = directory / "differential", ROOT / "test" / "emulator" / "differential.cpp"
     search = ("-I", ROOT / "tools" / "emulator" / "src", "-I", ROOT / "firmware" / "include")
-    links = (library, f"-Wl,-rpath,{library.parent}", "-lsimavr", "-lelf")
+    inside = ROOT / "build" / "release" / "libtilenca_emulator_inside.a"
+    links = (inside, "-pthread", "-lsimavr", "-lelf")
     run_tool("g++", "-std=c++17", "-O1", *search, source, "-o", program, *links)
     return program
 

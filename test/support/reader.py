@@ -71,6 +71,10 @@ class Reader:
         words = shlex.split(command.removesuffix(" &"), comments=True)
         if command == ACTIVATE:
             return
+        if words[0] == "cd":
+            self._folder = self._folder / words[1]
+            assert self._folder.is_dir(), f"{block.place}: there is no folder {words[1]}"
+            return
         if words[0] == "make":
             self._run(block, [*words, "--dry-run"])
         elif not block.runs:

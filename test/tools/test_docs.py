@@ -76,6 +76,13 @@ def test_a_signature_with_a_factory_is_valid_python() -> None:
     ast.parse(f"def f{signature}: pass")
 
 
+def test_a_type_variable_needs_no_entry() -> None:
+    assert docstrings.is_type_variable("tilenca.emulator.side_by_side.Job")
+    assert not docstrings.is_type_variable("tilenca.emulator.array.Array")
+    assert not docstrings.is_type_variable("no_such_module.Job")
+    assert not docstrings.is_type_variable("Job")
+
+
 @pytest.mark.parametrize(
     ("body", "complaint"),
     [

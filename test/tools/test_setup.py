@@ -45,11 +45,16 @@ def test_a_failed_command_names_the_remedy_and_reads_no_input() -> None:
 
 
 def test_every_requirement_is_pinned() -> None:
-    project = tomllib.loads(python.PYPROJECT.read_text(encoding="utf-8"))["project"]
-    extras = [project["optional-dependencies"][extra] for extra in python.EXTRAS.values()]
-    for requirement in [*project["dependencies"], *(item for extra in extras for item in extra)]:
-        name = re.split(r"[<>=]", requirement)[0]
-        assert re.fullmatch(r"[\d.]+", _pin(name)), requirement
+    project = tomllib.loads(python.PYPROJECT.read_text(encoding="utf-8"))
+    for level in python.EXTRAS:
+        for requirement in python.requirements(level, project):
+            name = re.split(r"[<>=]", requirement)[0]
+            assert re.fullmatch(r"[\d.]+", _pin(name)), requirement
+
+
+def test_what_builds_the_package_is_installed_with_it() -> None:
+    project = tomllib.loads(python.PYPROJECT.read_text(encoding="utf-8"))
+    assert set(project["build-system"]["requires"]) <= set(python.requirements("demo", project))
 
 
 def _pin(name: str) -> str:
@@ -167,7 +172,7 @@ def test_make_alone_lists_the_targets() -> None:
     [
         ("demo", ["demo"]),
         ("test", ["demo", "train", "test"]),
-        ("docs", ["demo", "docs"]),
+        ("docs", ["demo", "train", "docs"]),
         ("check", ["demo", "train", "test", "docs", "check"]),
     ],
 )

@@ -1,16 +1,19 @@
-"""The rollout's inner loop, compiled."""
+"""The rollout's inner loop, compiled; test_rollout.py compares what it computes with plain PyTorch."""
 
-from pathlib import Path
+import torch
 
-import pytest
-
-from tilenca.base.errors import BuildError
-from tilenca.training.rollout_kernel import library
+from tilenca.training.rollout_kernel import library, make_tape
 
 
-def test_a_library_that_is_missing_or_damaged_says_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(BuildError, match="not built yet; run: make setup-train"):
-        library(tmp_path / "nothing.so")
-    (tmp_path / "damaged.so").write_bytes(b"not a library")
-    with pytest.raises(BuildError, match=r"not usable .*; remove it and run: make setup-train"):
-        library(tmp_path / "damaged.so")
+def test_rows_of_a_tape_are_padded_to_what_the_library_adds_up_at_once() -> None:
+    block = library().lib.TILENCA_ROLLOUT_PADDING
+    tape = make_tape(3, 5 * 21, block, block + 1, 1)
+    for rows, width in zip(tape, (105, block, block + 1, 1), strict=True):
+        assert rows.shape == (3, width)
+        assert rows.dtype == torch.float32
+        assert rows.stride(0) % block == 0
+        assert 0 <= rows.stride(0) - width < block
+
+
+def test_a_tape_of_no_updates_has_no_rows() -> None:
+    assert [len(rows) for rows in make_tape(0, 105, 12, 12, 21)] == [0, 0, 0, 0]

@@ -106,7 +106,7 @@ def main() -> int:
         return rollout_by_autograd(net, start, schedule)
 
     apart = (convolved()[samples, :, rows, cols] - ours()).abs().max().item()
-    kind = library().tilenca_life_kind().decode()
+    kind = library().ffi.string(library().lib.tilenca_rollout_kind()).decode()
     print(f"training: a rollout of {BATCH} drawings and its gradient, one thread, {kind}")
     ways = {"convolutions over the padded grid": convolved, "plain PyTorch on real tiles": by_pytorch}
     for name, way in ways.items():

@@ -5,7 +5,6 @@ and on the site alike, also where it leads out of docs/.
 """
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,10 +27,9 @@ extensions = [
 ]
 root_doc = "docs/index"
 include_patterns = ["docs/**", "models/*/README.md", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
-exclude_patterns = [".*", "build", "firmware", "host", "test", "tools", "tiles", "**/node_modules"]
+exclude_patterns = [".*", "build", "firmware", "host", "test", "tools", "tiles"]
 
 myst_heading_anchors = 4
-myst_enable_extensions = ["attrs_inline"]
 
 html_theme = "furo"
 html_title = f"tilenca {version}"
@@ -50,8 +48,6 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True, "show-inheritance": True}
 autosummary_generate = False  # the tables only; the modules' texts are on the same page
-# The demo's set-up has none of these.
-autodoc_mock_imports = [name for name in ("torch", "matplotlib", "PIL") if find_spec(name) is None]
 
 # References to other projects would need their inventories from the network.
 nitpick_ignore_regex = [

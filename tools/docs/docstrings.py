@@ -1,11 +1,12 @@
-"""Keeps colons of plain prose out of napoleon's hands, and makes signatures of dataclasses valid Python.
+"""Where docstrings and signatures of this project need help on their way into Sphinx.
 
-Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon. This
-project writes types as annotations only, so there a colon is part of the sentence. It is hidden while
+Colons: Google's style lets a docstring's first line, and that of `Returns:`, begin with a type and a colon.
+This project writes types as annotations only, so there a colon is part of the sentence. It is hidden while
 napoleon works.
 """
 
-from typing import TYPE_CHECKING, Any
+import importlib
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -39,6 +40,15 @@ def valid_signature(signature: str) -> str:
     return signature.replace("<factory>", "...")
 
 
+def is_type_variable(target: str) -> bool:
+    """Whether a full name is that of a type variable, which has no entry that a reference could lead to."""
+    module, _, name = target.rpartition(".")
+    try:
+        return isinstance(getattr(importlib.import_module(module), name, None), TypeVar)
+    except (ImportError, ValueError):
+        return False
+
+
 def setup(app: "Sphinx") -> dict[str, bool]:
     """Listens to autodoc before and after napoleon does."""
 
@@ -53,7 +63,11 @@ def setup(app: "Sphinx") -> dict[str, bool]:
     ) -> tuple[str | None, Any]:
         return (None if signature is None else valid_signature(signature)), returns
 
+    def missing(_app: object, _environment: object, node: Any, content: Any) -> Any:
+        return content if is_type_variable(node.get("reftarget", "")) else None
+
     app.connect("autodoc-process-signature", sign)
+    app.connect("missing-reference", missing)
     app.connect("autodoc-process-docstring", before, priority=BEFORE_NAPOLEON)
     app.connect("autodoc-process-docstring", after, priority=AFTER_NAPOLEON)
     return {"parallel_read_safe": True}

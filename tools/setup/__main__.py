@@ -12,13 +12,13 @@ from setup.command import SetupError
 
 LEVELS = {
     "demo": "build the firmware and run it on emulated tiles",
-    "train": "the same, and train models",
-    "test": "the same, and run the tests",
-    "docs": "as demo, and build the documentation site",
+    "train": "as demo, and train models",
+    "test": "as train, and run the tests",
+    "docs": "as train, and build the documentation site",
     "check": "as test and docs, and check format, lint, types and budgets",
 }
 # The levels that each one includes.
-INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["demo"], "check": ["test", "docs"]}
+INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["train"], "check": ["test", "docs"]}
 # Debian packages beyond those of setup.sh. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"]}
 

@@ -18,24 +18,34 @@ def say(message: str) -> None:
     print(f"setup: {message}", file=sys.stderr, flush=True)
 
 
-def run(command: Sequence[str | Path], failure: str, env: Mapping[str, str] | None = None) -> None:
+def run(
+    command: Sequence[str | Path], failure: str, env: Mapping[str, str] | None = None, quiet: bool = False
+) -> None:
     """Runs a command in the project's root, with nothing to read from.
 
     Args:
         command: the program and its arguments.
         failure: what it means to the user if it fails, and the remedy.
         env: the whole environment, if not the present one.
+        quiet: whether its output is shown only where it fails.
 
     Raises:
         SetupError: it could not be started or did not end with 0.
     """
     try:
         done = subprocess.run(
-            [str(word) for word in command], cwd=ROOT, stdin=subprocess.DEVNULL, env=env, check=False
+            [str(word) for word in command],
+            cwd=ROOT,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE if quiet else None,
+            stderr=subprocess.STDOUT if quiet else None,
+            env=env,
+            check=False,
         )
     except OSError as error:
         raise SetupError(f"{failure} ({error})") from error
     if done.returncode:
+        sys.stderr.write((done.stdout or b"").decode(errors="replace"))
         raise SetupError(f"{failure} (exit status {done.returncode})")
 
 

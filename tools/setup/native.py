@@ -1,19 +1,20 @@
 """What is compiled or installed outside Python: system packages and the C++ libraries."""
 
 import os
+import re
+import shutil
 import subprocess
 from collections.abc import Sequence
+from pathlib import Path
 
 from setup.command import ROOT, run, say
 
-# By the level of the set-up that needs them.
-LIBRARIES = {
-    "demo": {
-        "tools/emulator": "build/emulator/libtilenca_emulator.so",
-        "tools/simulator": "build/simulator/libtilenca_core.so",
-    },
-    "train": {"tools/training": "build/training/libtilenca_life.so"},
-}
+BUILD = ROOT / "build" / "release"
+PRESET = "release"  # of CMakePresets.json
+
+# Targets of CMake, by the level of the set-up that needs them.
+LIBRARIES = {"demo": ["tilenca_emulator", "tilenca_simulator"], "train": ["tilenca_rollout"]}
+REMEDY = "see above; where it is not the code's fault, remove build/release and run the same again"
 
 
 def install_system_packages(packages: Sequence[str]) -> None:
@@ -32,18 +33,45 @@ def install_system_packages(packages: Sequence[str]) -> None:
 
 
 def build_libraries(levels: Sequence[str]) -> None:
-    """Compiles what the levels need for this machine; make knows what is up to date.
+    """Compiles what the levels need for this machine; CMake knows what is up to date.
 
     Raises:
-        SetupError: a compilation failed.
+        SetupError: CMake is missing, or a compilation failed.
     """
-    # The makes run on their own: flags and the job server of a make that called us are not meant for them.
+    # The build runs on its own: flags and the job server of a make that called us are not meant for it.
     env = {
         name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")
     }
-    jobs = f"-j{os.cpu_count() or 1}"
-    wanted = {folder: library for level in levels for folder, library in LIBRARIES.get(level, {}).items()}
-    for folder, library in wanted.items():
-        if not (ROOT / library).exists():
-            say(f"compiling {folder}")
-        run(["make", "--silent", jobs, "-C", folder], f"{folder} does not compile, see above", env=env)
+    cache = BUILD / "CMakeCache.txt"
+    if configured_for(BUILD) != ROOT:
+        shutil.rmtree(BUILD, ignore_errors=True)
+        say("compiling the C++ libraries")
+    if not cache.exists() or cache.stat().st_mtime < (ROOT / "CMakePresets.json").stat().st_mtime:
+        ninja = shutil.which("ninja") is not None and not (BUILD / "Makefile").exists()
+        generator = ["-G", "Ninja"] if ninja else []
+        run(
+            ["cmake", "--preset", PRESET, *generator],
+            f"CMake cannot prepare the libraries, {REMEDY}",
+            env,
+            True,
+        )
+        cache.touch()  # CMake leaves it alone where nothing in it changes
+    wanted = [target for level in levels for target in LIBRARIES.get(level, [])]
+    jobs = ["--parallel", str(os.cpu_count() or 1)]
+    build = ["cmake", "--build", "--preset", PRESET, *jobs, "--target", *wanted]
+    run(build, f"the C++ libraries do not compile, {REMEDY}", env, True)
+
+
+def configured_for(build: Path) -> Path | None:
+    """The source tree that a build folder of CMake is for; None: it is not ready to build in.
+
+    A clone that was moved takes its build folder along, which is of no use at the new place.
+    """
+    if not any((build / name).exists() for name in ("build.ninja", "Makefile")):
+        return None
+    try:
+        cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+    found = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", cache, re.MULTILINE)
+    return Path(found.group(1)) if found else None

@@ -6,6 +6,7 @@ import sys
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from setup.command import ROOT, SetupError, Stamp, digest, run, say
 
@@ -15,7 +16,15 @@ CONSTRAINTS = ROOT / "constraints.txt"
 PYPROJECT = ROOT / "pyproject.toml"
 
 # What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
-EXTRAS = {"demo": "firmware", "train": "train", "test": "test", "check": "check", "docs": "docs"}
+EXTRAS = {
+    "demo": ["firmware"],
+    "train": ["train"],
+    "test": ["test", "wheel"],
+    "check": ["check"],
+    "docs": ["docs"],
+}
+# The version is here; an installed package tells the one it was installed with.
+VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 
 
 def pinned_version(package: str) -> str:
@@ -48,7 +57,7 @@ def make_environment(levels: Sequence[str]) -> None:
     _make_venv()
     project = tomllib.loads(PYPROJECT.read_text(encoding="utf-8"))
     for level in levels:
-        _install_level(level, project["project"])
+        _install_level(level, project)
     _install_project()
 
 
@@ -85,10 +94,23 @@ def belongs_here(venv: Path) -> bool:
     return works.returncode == 0 and f"{venv}/bin/python" in head
 
 
-def _install_level(level: str, project: dict[str, dict[str, list[str]]]) -> None:
-    wanted = list(project["optional-dependencies"][EXTRAS[level]])
+def requirements(level: str, project: dict[str, Any]) -> list[str]:
+    """What a level needs beyond the levels below it.
+
+    Args:
+        level: one of EXTRAS.
+        project: what pyproject.toml says.
+    """
+    extras = project["project"]["optional-dependencies"]
+    wanted = [requirement for extra in EXTRAS[level] for requirement in extras[extra]]
     if level == "demo":
-        wanted += [*project["dependencies"], f"setuptools=={pinned_version('setuptools')}"]
+        # Without build isolation, so that what builds the package is pinned like the rest.
+        wanted += [*project["project"]["dependencies"], *project["build-system"]["requires"]]
+    return wanted
+
+
+def _install_level(level: str, project: dict[str, Any]) -> None:
+    wanted = requirements(level, project)
     stamp = Stamp(VENV / f".tilenca-{level}", digest([*wanted, CONSTRAINTS.read_bytes()]))
     pin_holds = level != "demo" or installed_version("platformio") == pinned_version("platformio")
     if stamp.is_current() and pin_holds:
@@ -101,7 +123,7 @@ def _install_level(level: str, project: dict[str, dict[str, list[str]]]) -> None
 
 
 def _install_project() -> None:
-    stamp = Stamp(VENV / ".tilenca-project", digest([PYPROJECT.read_bytes()]))
+    stamp = Stamp(VENV / ".tilenca-project", digest([PYPROJECT.read_bytes(), VERSION_FILE.read_bytes()]))
     if stamp.is_current() and (VENV / "bin" / "tilenca").exists():
         return
     say("installing tilenca itself")

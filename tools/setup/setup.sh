@@ -14,7 +14,7 @@ find_python() {
     done
 }
 
-sh tools/setup/apt.sh g++ make avrdude
+sh tools/setup/apt.sh g++ make cmake ninja-build avrdude
 
 python=.venv/bin/python
 if ! "$python" -c '' 2>/dev/null; then

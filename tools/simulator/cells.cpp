@@ -12,24 +12,24 @@ Cells::Cells(const PackedNetwork& network, uint8_t classes, int count, int16_t* 
     : network_(network), classes_(classes), stride_(kNeighbourhood * network.channels),
       inputs_(count * stride_), states_(states) {
     for (int cell = 0; cell < count; ++cell) {
-        tell(cell);
+        update_message(cell);
     }
 }
 
-void Cells::live(const Round& round, const Links& links, Display& display) {
-    for (int32_t cell : round.gone) {
+void Cells::apply(const Tick& tick, const Links& links, Display& display) {
+    for (int32_t cell : tick.switched_off) {
         display.show(cell, kDark);
     }
-    for (int32_t cell : round.born) {
+    for (int32_t cell : tick.switched_on) {
         switch_on(cell);
     }
-    for (const Event& arrival : round.arrivals) {
+    for (const Event& arrival : tick.deliveries) {
         deliver(arrival, links);
     }
-    update(round.updates, display);
+    update(tick.updates, display);
 }
 
-void Cells::tell(int cell) {
+void Cells::update_message(int cell) {
     for (int c = 0; c < network_.channels; ++c) {
         inputs(cell)[c] = message_of(state(cell)[c]);
     }
@@ -39,15 +39,15 @@ void Cells::switch_on(int cell) {
     memset(state(cell), 0, network_.channels * sizeof(int16_t));
     memset(inputs(cell), 0, stride_);
     state(cell)[0] = kSeedState;
-    tell(cell);
+    update_message(cell);
 }
 
 void Cells::deliver(const Event& arrival, const Links& links) {
     for (int side = 0; side < kSides; ++side) {
         if (arrival.sides >> side & 1) {
             const uint8_t theirs = index_of(opposite(side_at(static_cast<uint8_t>(side))));
-            int8_t* heard = inputs(links.neighbour(arrival.cell, side)) + (1 + theirs) * network_.channels;
-            copy(heard, inputs(arrival.cell), network_.channels);
+            int8_t* received = inputs(links.neighbour(arrival.cell, side)) + (1 + theirs) * network_.channels;
+            copy(received, inputs(arrival.cell), network_.channels);
         }
     }
 }
@@ -60,7 +60,7 @@ void Cells::update(const std::vector<Event>& events, Display& display) {
     update_cells(network_, batch_.data(), batch_.size());
     for (const Event& event : events) {
         const int16_t* scores = state(event.cell) + network_.channels - classes_;
-        tell(event.cell);
+        update_message(event.cell);
         display.show(event.cell, static_cast<int8_t>(best_class(scores, classes_)));
     }
     updates_ += events.size();

@@ -18,8 +18,8 @@ class Cells {
     // `states` [count][C] stays the caller's and is changed in place.
     Cells(const PackedNetwork& network, uint8_t classes, int count, int16_t* states);
 
-    // Carries out a round among neighbours as linked.
-    void live(const Round& round, const Links& links, Display& display);
+    // Applies a tick.
+    void apply(const Tick& tick, const Links& links, Display& display);
 
     // How many updates were computed in all.
     uint64_t updates() const { return updates_; }
@@ -27,7 +27,7 @@ class Cells {
   private:
     int8_t* inputs(int cell) { return &inputs_[cell * stride_]; }
     int16_t* state(int cell) { return states_ + static_cast<size_t>(cell) * network_.channels; }
-    void tell(int cell);
+    void update_message(int cell);
     void switch_on(int cell);
     void deliver(const Event& arrival, const Links& links);
     void update(const std::vector<Event>& events, Display& display);

@@ -10,52 +10,51 @@ namespace {
 
 constexpr int32_t kNever = INT_MAX;
 
-// The round in which something happens.
-int32_t round_of(int64_t units) {
+// The tick in which something happens.
+int32_t tick_of(int64_t units) {
     return static_cast<int32_t>((units + kUnits - 1) >> kUnitBits);
 }
 
 } // namespace
 
-Clocks::Clocks(const TilencaSetup& setup, int first, int last)
-    : Schedule(setup, first, last, kTicks, round_of(setup.start)),
-      period_(setup.period + setup.starts[first]), latency_(setup.latency + setup.starts[first]),
-      on_the_way_(on_.size()), now_due_(on_.size()) {
+Clocks::Clocks(const tilenca_setup& setup, int first, int last)
+    : Schedule(setup, first, last, kTicks, tick_of(setup.start)), period_(setup.period + setup.starts[first]),
+      latency_(setup.latency + setup.starts[first]), sending_(on_.size()), now_due_(on_.size()) {
     const int64_t* updates = setup.first + setup.starts[first];
     for (int cell = 0; cell < cells(); ++cell) {
         next_update_.push_back(updates[cell]);
-        due_.push_back(on_[cell] ? std::max(round_of(updates[cell]), now_ + 1) : kNever);
+        due_.push_back(on_[cell] ? std::max(tick_of(updates[cell]), now_ + 1) : kNever);
     }
 }
 
-void Clocks::plan(Round& round) {
+void Clocks::plan(Tick& tick) {
     int due = 0;
     for (int cell = 0; cell < cells();
-         ++cell) { // without a branch, since this goes over all cells every round
+         ++cell) { // without a branch, since this goes over all cells every tick
         now_due_[due] = cell;
         due += due_[cell] == now_;
     }
     for (int i = 0; i < due; ++i) {
         const int cell = now_due_[i];
-        if (on_the_way_[cell]) {
-            round.arrivals.push_back({cell, links_.send(cell, random_of(cell), now_)});
-            on_the_way_[cell] = 0;
-            due_[cell] = std::max(round_of(next_update_[cell]), now_);
+        if (sending_[cell]) {
+            tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), now_)});
+            sending_[cell] = 0;
+            due_[cell] = std::max(tick_of(next_update_[cell]), now_);
         }
     }
     for (int i = 0; i < due; ++i) {
         if (due_[now_due_[i]] == now_) {
-            update(now_due_[i], round);
+            update(now_due_[i], tick);
         }
     }
 }
 
-void Clocks::update(int cell, Round& round) {
+void Clocks::update(int cell, Tick& tick) {
     if (!stuck_[cell]) {
-        round.updates.push_back({cell, links_.absent(cell, random_of(cell), now_)});
+        tick.updates.push_back({cell, links_.absent(cell, random_of(cell), now_)});
     }
-    on_the_way_[cell] = 1;
-    due_[cell] = std::max(round_of(next_update_[cell] + latency_[cell]), now_ + 1);
+    sending_[cell] = 1;
+    due_[cell] = std::max(tick_of(next_update_[cell] + latency_[cell]), now_ + 1);
     next_update_[cell] += period_[cell];
 }
 
@@ -64,9 +63,9 @@ void Clocks::switch_off(int cell) {
 }
 
 void Clocks::switch_on(int cell) {
-    on_the_way_[cell] = 0;
+    sending_[cell] = 0;
     next_update_[cell] = now_ * kUnits + period_[cell];
-    due_[cell] = round_of(next_update_[cell]);
+    due_[cell] = tick_of(next_update_[cell]);
 }
 
 } // namespace tilenca

@@ -2,15 +2,15 @@
 
 namespace tilenca {
 
-Display::Display(const TilencaSetup& setup, int first, int last, const Schedule& schedule, int8_t* shown)
+Display::Display(const tilenca_setup& setup, int first, int last, const Schedule& schedule, int8_t* shown)
     : target_(setup.target + setup.starts[first]), shown_(shown), right_(last - first), total_(last - first) {
     for (int run = first; run < last; ++run) {
         run_.insert(run_.end(), setup.starts[run + 1] - setup.starts[run], run - first);
     }
     for (int cell = 0; cell < static_cast<int>(run_.size()); ++cell) {
-        asked_.push_back(schedule.counts(cell));
-        total_[run_[cell]] += asked_[cell];
-        right_[run_[cell]] += asked_[cell] && shown_[cell] == target_[cell];
+        counted_.push_back(schedule.counts(cell));
+        total_[run_[cell]] += counted_[cell];
+        right_[run_[cell]] += counted_[cell] && shown_[cell] == target_[cell];
     }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "schedule.h"
-#include "setup.h"
+#include "tilenca/simulator.h"
 
 namespace tilenca {
 
@@ -16,10 +16,10 @@ class Display {
   public:
     // Of the runs [first, last) of the setup; `shown` [cells of the group] is written in place. Those the
     // schedule counts are asked.
-    Display(const TilencaSetup& setup, int first, int last, const Schedule& schedule, int8_t* shown);
+    Display(const tilenca_setup& setup, int first, int last, const Schedule& schedule, int8_t* shown);
 
     void show(int cell, int8_t what) {
-        if (asked_[cell]) {
+        if (counted_[cell]) {
             right_[run_[cell]] += (what == target_[cell]) - (shown_[cell] == target_[cell]);
         }
         shown_[cell] = what;
@@ -31,7 +31,7 @@ class Display {
   private:
     const int8_t* target_;
     int8_t* shown_;
-    std::vector<uint8_t> asked_;
+    std::vector<uint8_t> counted_;
     std::vector<int32_t> run_;   // [cell]
     std::vector<int32_t> right_; // [run]
     std::vector<int32_t> total_; // [run]

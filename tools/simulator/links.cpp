@@ -6,7 +6,7 @@ namespace tilenca {
 
 namespace {
 
-constexpr int32_t kNever = INT_MIN / 2; // long before any round, and a difference to it still fits
+constexpr int32_t kNever = INT_MIN / 2; // long before any tick, and a difference to it still fits
 
 constexpr int opposite_of(int side) {
     return index_of(opposite(side_at(static_cast<uint8_t>(side))));
@@ -14,9 +14,9 @@ constexpr int opposite_of(int side) {
 
 } // namespace
 
-Links::Links(const TilencaSetup& setup, int first, int last, int silent_after)
+Links::Links(const tilenca_setup& setup, int first, int last, int silent_after)
     : loss_(setup.loss), zeros_(setup.zeros != 0),
-      tracks_silence_(setup.fault != kNoFault || (setup.loss > 0 && setup.zeros == 0)),
+      tracks_silence_(setup.fault != TILENCA_FAULT_NONE || (setup.loss > 0 && setup.zeros == 0)),
       silent_after_(silent_after) {
     const int32_t begin = setup.starts[first], end = setup.starts[last];
     for (int32_t i = begin * kSides; i < end * kSides; ++i) {

@@ -7,7 +7,7 @@
 
 #include "core/side.h"
 #include "random.h"
-#include "setup.h"
+#include "tilenca/simulator.h"
 
 namespace tilenca {
 
@@ -15,8 +15,8 @@ using Sides = uint8_t; // bit s: side s
 
 class Links {
   public:
-    // Of the runs [first, last) of the setup. A side is silent when nothing came for `silent_after` rounds.
-    Links(const TilencaSetup& setup, int first, int last, int silent_after);
+    // Of the runs [first, last) of the setup. A side is silent when nothing came for `silent_after` ticks.
+    Links(const tilenca_setup& setup, int first, int last, int silent_after);
 
     // -1 for none.
     int neighbour(int cell, int side) const { return neighbours_[cell * kSides + side]; }
@@ -24,7 +24,8 @@ class Links {
     // Sends the cell's message; the sides on which it arrives.
     Sides send(int cell, Random& random, int now);
 
-    // The cell would send again what it sent last: what was heard a round ago is not silent now.
+    // The cell would send again what it sent last: sides where its message arrived a tick ago are not silent
+    // now.
     void renew(int cell, int now);
 
     // The sides whose message the cell reads as zeros.
@@ -37,7 +38,7 @@ class Links {
     Sides lost(Random& random) const;
 
     std::vector<int32_t> neighbours_;
-    std::vector<int32_t> arrived_; // [cell][side], the round when the cell's message last arrived there
+    std::vector<int32_t> arrived_; // [cell][side], the tick when the cell's message last arrived there
     uint64_t loss_;
     bool zeros_;
     bool tracks_silence_;

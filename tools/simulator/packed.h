@@ -9,7 +9,7 @@
 
 namespace tilenca {
 
-// One layer, its weights row-major [output][input]; outputs counts blocks of kRows.
+// One layer; `outputs` counts blocks of kRows.
 struct PackedLayer {
     class Row {
       public:
@@ -24,7 +24,8 @@ struct PackedLayer {
         const float* next_;
     };
 
-    PackedLayer(uint8_t inputs, uint8_t outputs, const int8_t* weights, const int16_t* biases);
+    // Dense weights are row-major [output][input].
+    PackedLayer(uint8_t width_in, uint8_t width_out, const int8_t* dense, const int16_t* dense_biases);
 
     Row row(uint8_t output) const { return Row(weights.data() + output * inputs * kRows); }
     const float* bias(uint8_t output) const { return biases.data() + output * kRows; }

@@ -4,15 +4,15 @@
 
 namespace tilenca {
 
-Sampler::Sampler(const TilencaSetup& setup, int first, int last)
+Sampler::Sampler(const tilenca_setup& setup, int first, int last)
     : Schedule(setup, first, last, 2, 0), sent_(on_.size()) {
     for (int cell = 0; cell < cells(); ++cell) {
-        sending_.push_back(cell); // everybody says what it starts from
+        sending_.push_back(cell); // every cell sends what it starts from
     }
 }
 
-void Sampler::plan(Round& round) {
-    deliver(round);
+void Sampler::plan(Tick& tick) {
+    deliver(tick);
     sending_.clear();
     for (size_t run = 0; run < random_.size(); ++run) {
         Random& random = random_[run];
@@ -25,16 +25,16 @@ void Sampler::plan(Round& round) {
                 }
                 sending_.push_back(cell);
                 if (!stuck_[cell]) {
-                    round.updates.push_back({cell, links_.absent(cell, random, now_)});
+                    tick.updates.push_back({cell, links_.absent(cell, random, now_)});
                 }
             }
         }
     }
 }
 
-void Sampler::deliver(Round& round) {
+void Sampler::deliver(Tick& tick) {
     if (links_.tracks_silence()) {
-        // Who skips its turn is not silent: its last message still is its state.
+        // A cell that skips its turn is not silent: its last message still is its state.
         std::fill(sent_.begin(), sent_.end(), 0);
         for (int32_t cell : sending_) {
             sent_[cell] = 1;
@@ -47,7 +47,7 @@ void Sampler::deliver(Round& round) {
     }
     for (int32_t cell : sending_) {
         if (on_[cell]) {
-            round.arrivals.push_back({cell, links_.send(cell, random_of(cell), now_)});
+            tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), now_)});
         }
     }
 }

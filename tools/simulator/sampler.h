@@ -1,4 +1,4 @@
-// The paper's sampler: twice per step a random half of the cells updates and is heard at once.
+// The paper's sampler: twice per step a random half of the cells updates, and its messages arrive at once.
 #pragma once
 
 #include "schedule.h"
@@ -7,16 +7,16 @@ namespace tilenca {
 
 class Sampler : public Schedule {
   public:
-    Sampler(const TilencaSetup& setup, int first, int last);
+    Sampler(const tilenca_setup& setup, int first, int last);
 
   private:
-    void plan(Round& round) override;
+    void plan(Tick& tick) override;
     void switch_off(int) override {}
     void switch_on(int) override {}
 
-    void deliver(Round& round);
+    void deliver(Tick& tick);
 
-    std::vector<int32_t> sending_; // those who updated in the round before
+    std::vector<int32_t> sending_; // updated in the tick before
     std::vector<uint8_t> sent_;    // marks them
 };
 

@@ -1,5 +1,7 @@
-// Who updates when, hears what of whom, and is there at all. Knows nothing of states: rounds come out, and
-// whoever has states (cells.h, or the host's tensors) carries them out, in the order of the fields.
+// Which cells update in each tick, which messages arrive, and which cells are there at all.
+//
+// A schedule knows nothing of states. Their owner (cells.h, or tensors on the host) applies each tick in the
+// order of its fields.
 #pragma once
 
 #include <stdint.h>
@@ -9,50 +11,48 @@
 
 #include "links.h"
 #include "random.h"
-#include "setup.h"
+#include "tilenca/simulator.h"
 
 namespace tilenca {
 
-constexpr int kTicks = 20; // resolution of a step on clocks
+constexpr int kTicks = TILENCA_TICKS; // of a step on clocks
 constexpr int kUnitBits = 16;
-constexpr int64_t kUnits = 1 << kUnitBits; // and of a tick, so that clocks drift in whole numbers
+constexpr int64_t kUnits = 1 << kUnitBits; // of a tick
+static_assert(kUnits == TILENCA_UNITS_PER_TICK, "the header gives the number");
 
-struct Event {
-    int32_t cell;
-    int32_t sides;
-};
+using Event = tilenca_event;
 
-struct Round {
-    std::vector<int32_t> gone;   // fall silent and dark
-    std::vector<int32_t> born;   // are switched on again, in the seed state, and have heard nobody
-    std::vector<Event> arrivals; // the cell's message of now arrives at these sides
-    std::vector<Event> updates;  // the cell updates, and reads zeros for these sides
+struct Tick {
+    std::vector<int32_t> switched_off; // fall silent and dark
+    std::vector<int32_t> switched_on;  // are back in the seed state, and have no messages yet
+    std::vector<Event> deliveries;     // the cell's message of now arrives at these sides
+    std::vector<Event> updates;        // the cell updates, and reads zeros for these sides
 };
 
 class Schedule {
   public:
     virtual ~Schedule() = default;
 
-    // Plans the next round; true when it is the last one of a step.
-    bool next(Round& round);
+    // Plans the next tick; true when it is the last one of a step.
+    bool next(Tick& tick);
 
-    // Cells that are never asked what they show: never there, dead or stuck.
+    // False for cells whose display does not count: never there, dead or stuck.
     bool counts(int cell) const { return counts_[cell] != 0; }
 
     const Links& links() const { return links_; }
 
   protected:
-    // Of the runs [first, last); `rounds` make a step; rounds count from `start`.
-    Schedule(const TilencaSetup& setup, int first, int last, int rounds, int start);
+    // Of the runs [first, last); `ticks` make a step; ticks count from `start`.
+    Schedule(const tilenca_setup& setup, int first, int last, int ticks, int start);
 
-    virtual void plan(Round& round) = 0;
+    virtual void plan(Tick& tick) = 0;
     virtual void switch_off(int cell) = 0;
     virtual void switch_on(int cell) = 0;
 
     int cells() const { return static_cast<int>(on_.size()); }
     Random& random_of(int cell) { return random_[run_[cell]]; }
 
-    int now_;                     // round
+    int now_;                     // tick
     std::vector<int32_t> starts_; // [run], and the end
     std::vector<Random> random_;  // [run]
     std::vector<uint8_t> on_;
@@ -60,15 +60,15 @@ class Schedule {
     Links links_;
 
   private:
-    void begin_step(Round& round, int64_t step);
+    void begin_step(Tick& tick, int64_t step);
 
-    const TilencaSetup& setup_;
-    int first_, last_, rounds_;
+    const tilenca_setup& setup_;
+    int first_, last_, ticks_;
     std::vector<int32_t> run_; // [cell]
     std::vector<uint8_t> counts_;
 };
 
 // The schedule that the setup asks for; the setup must outlive it.
-std::unique_ptr<Schedule> make_schedule(const TilencaSetup& setup, int first, int last);
+std::unique_ptr<Schedule> make_schedule(const tilenca_setup& setup, int first, int last);
 
 } // namespace tilenca

@@ -61,7 +61,7 @@ class Block {
   public:
     explicit Block(const PackedNetwork& network) : network_(network) {}
 
-    // 1 <= count <= W; the lanes that nobody needs compute what is left over from before.
+    // 1 <= count <= W; unused lanes compute what is left over from before.
     void update(const CellUpdate* updates, int count) {
         const int channels = network_.channels;
         for (int lane = 0; lane < count; ++lane) {

@@ -1,1 +1,1 @@
-"""What every room may use: errors, paths, standard streams, signals, the four sides."""
+"""What every room may use: errors, paths, the project at hand, standard streams, signals, the four sides."""

@@ -5,7 +5,7 @@ without a traceback, and so it does what the system refuses (a full disk, no mem
 this program.
 """
 
-from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.base import paths
 
 
 class TilencaError(Exception):
@@ -44,4 +44,5 @@ def image_error(message: str) -> TilencaError:
     Args:
         message: the whole message, which begins with the image's path.
     """
-    return (BuildError if message.startswith(str(FIRMWARE_ELF.parent)) else UsageError)(message)
+    ours = {str(elf.parent) for elf in (paths.FIRMWARE_ELF, paths.firmware_elf())}
+    return (BuildError if message.startswith(tuple(ours)) else UsageError)(message)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError, image_error
+from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, number, seed, size, whole
 from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
@@ -47,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="shape file (shapes/digits.toml)",
     )
     add("--size", type=size, metavar="RxC", help="stretch the shapes to so many rows and columns, like 9x7")
-    add("--elf", type=Path, default=paths.FIRMWARE_ELF, metavar="F", help="firmware image (the last build's)")
+    add("--elf", type=Path, metavar="F", help="firmware image (the last build's, or the one of the package)")
     length = parser.add_mutually_exclusive_group()
     length.add_argument(
         "--seconds", type=number(0.001, MAX_SECONDS), metavar="S", help="run for S emulated seconds"
@@ -132,8 +133,9 @@ def run(args: argparse.Namespace) -> int:
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
-    _check_readable(args.elf, "run `make demo` or `pio run`, or give --elf")
-    defaults = firmware_settings(args.elf)
+    image = args.elf or firmware_image()
+    _check_readable(image, f"{build_remedy()}, or give --elf")
+    defaults = firmware_settings(image)
     settings = EmulationSettings(
         seconds=args.seconds,
         updates=args.updates or DEFAULT_UPDATES,
@@ -148,7 +150,7 @@ def run(args: argparse.Namespace) -> int:
     )
 
     def lay_out(shape: Shape) -> Emulation:
-        return Emulation(shape, task.labels, args.elf, settings, defaults)
+        return Emulation(shape, task.labels, image, settings, defaults)
 
     if args.serve is not None:
         emulation = lay_out(shapes[0])

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
+from tilenca.base.project import build_remedy, firmware_image, install_remedy
 from tilenca.commands.arguments import count, seed, share, size
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
@@ -193,7 +194,7 @@ def _engine(name: str, model: Model) -> Engine:
         from tilenca.training.float_engine import FloatEngine
     except ImportError as error:
         raise UsageError(
-            "--engine float needs PyTorch; use --engine fast, or run: make setup-train"
+            f"--engine float needs PyTorch; use --engine fast, or run: {install_remedy('train')}"
         ) from error
     return FloatEngine(model)
 
@@ -204,9 +205,9 @@ def _emulate(
     """Runs the firmware image, one emulation for each entry of `chosen`."""
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
-    elf = paths.FIRMWARE_ELF
+    elf = firmware_image()
     if not elf.exists():
-        raise BuildError(f"{elf}: no firmware image; run `make demo` or `pio run`")
+        raise BuildError(f"{elf}: no firmware image; {build_remedy()}")
     defaults = firmware_settings(elf)
 
     def run(number: int, stopped: threading.Event) -> tuple[float, float]:
@@ -237,7 +238,7 @@ def _check_model(emulation: Emulation, model: Model, directory: Path) -> None:
     hello = emulation.hello
     if hello is not None and hello.model_id != model.model_id:
         raise BuildError(
-            f"{paths.FIRMWARE_ELF}: carries model {hello.model_id:04X}, not {model.model_id:04X}; "
+            f"{paths.firmware_elf()}: carries model {hello.model_id:04X}, not {model.model_id:04X}; "
             f"run: tilenca export --model {directory} && pio run"
         )
 

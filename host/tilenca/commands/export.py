@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
+from tilenca.base.project import project
 from tilenca.commands import export_plan
 from tilenca.model import cost, packing
 from tilenca.model.file import Model, load_model
@@ -29,7 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="the trained model"
     )
     parser.add_argument(
-        "--out", type=Path, default=paths.FIRMWARE, metavar="DIR", help="the firmware's folder to render into"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="the firmware's folder to render into (the project's firmware/)",
     )
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not current")
     parser.add_argument("--force", action="store_true", help="overwrite files that were edited by hand")
@@ -41,16 +45,15 @@ def run(args: argparse.Namespace) -> int:
     """Renders, or checks, the files, or estimates what a network to be would cost; prints what was done."""
     if export_plan.asked(args):
         return export_plan.run(args)
+    out: Path = args.out or project() / "firmware"
     model = load_model(args.model)
     check_fits(model)
     files = render(model)
-    differing = [
-        str(args.out / path) for path, text in files.items() if not is_current(args.out / path, text)
-    ]
+    differing = [str(out / path) for path, text in files.items() if not is_current(out / path, text)]
     if not args.check:
-        write_files(args.out, files, args.force)
+        write_files(out, files, args.force)
     report = {
-        "files": [str(args.out / path) for path in files],
+        "files": [str(out / path) for path in files],
         "flash_bytes": cost.flash_bytes(model.dimensions, len(model.labels)),
         "model_id": f"{model.model_id:04X}",
         "outputs_in_16_bits": [
@@ -68,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     if not args.json:
         state = "current" if args.check or not differing else "written"
         for path in files:
-            print(f"{args.out / path}: {state}")
+            print(f"{out / path}: {state}")
         print(f"model {report['model_id']}, {report['flash_bytes']} bytes of flash")
         print(_sums(model))
     return 0

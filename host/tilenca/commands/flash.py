@@ -5,12 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tilenca.base import paths
 from tilenca.base.errors import NoDeviceError
+from tilenca.base.project import firmware_image
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_fleet_arguments, count, positive
 from tilenca.fleet.avrdude import Avrdude, Progress, find_avrdude
 from tilenca.fleet.boards import Board, Found, find_fleet, tile_numbers
-from tilenca.fleet.build import FIRMWARE_HEX, build
+from tilenca.fleet.build import build
 from tilenca.fleet.flash_state import failed_boards, remember
 from tilenca.fleet.identify import PATIENCE_S, SILENT, Answer, ask_all
 from tilenca.fleet.image import Image, check_image
@@ -182,9 +184,11 @@ def _only(wanted: set[int], boards: list[Board]) -> list[Board]:
 
 def _image(args: argparse.Namespace) -> Image:
     """What is to be written, built if need be, and checked before a board is touched."""
-    if not (args.hex or args.no_build):
+    if args.hex:
+        return check_image(args.hex)
+    if paths.PROJECT is not None and not args.no_build:
         build()
-    return check_image(args.hex or FIRMWARE_HEX)
+    return check_image(firmware_image().with_suffix(".hex"))
 
 
 def _program(args: argparse.Namespace, tool: Avrdude, image: Image, rows: dict[str, FlashRow]) -> bool:

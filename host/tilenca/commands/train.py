@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.stdio import warn
@@ -270,9 +271,12 @@ def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
 
 
 def _place(path: Path) -> str:
-    """A path as seen from the project's root, if it is inside."""
+    """A path as seen from the project, or from what comes with tilenca, if it is inside."""
     full = path.resolve()
-    return str(full.relative_to(paths.ROOT) if full.is_relative_to(paths.ROOT) else path)
+    for root in (paths.PROJECT, paths.ROOT):
+        if root is not None and full.is_relative_to(root.resolve()):
+            return str(full.relative_to(root.resolve()))
+    return str(path)
 
 
 def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) -> str:
@@ -290,11 +294,13 @@ def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) ->
 
 
 def _commit() -> str:
-    """The commit this runs on, `-dirty` when tracked files differ; "unknown" outside a repository."""
+    """The commit this runs on, `-dirty` when tracked files differ; of an installed wheel, its version."""
+    if paths.CHECKOUT is None:
+        return f"tilenca {__version__}"
     git = shutil.which("git")
     if git is None:
         return "unknown"
-    words = [git, "-C", str(paths.ROOT), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
+    words = [git, "-C", str(paths.CHECKOUT), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     return done.stdout.strip() or "unknown"
 

@@ -2,14 +2,14 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from ctypes import POINTER, byref, c_double, c_uint8, c_uint32, c_uint64, string_at
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 from tilenca.base.errors import TilencaError, UsageError, image_error
 from tilenca.base.sides import SIDES
-from tilenca.emulator.library import check, last_error, library
+from tilenca.emulator.library import call, library, new, text
 from tilenca.emulator.tile import DATA_SPACE, EmulatedTile
 
 MOST_DELAY_S = 1.0
@@ -73,27 +73,26 @@ class Array:
             BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
             UsageError: the lists do not fit the number of tiles.
         """
-        self._handle: int | None = None
-        ppm, switch_on_s = ppm or [0.0] * tiles, switch_on_s or [0.0] * tiles
+        self._handle: Any = None
+        ppm, switch_on_s = list(ppm or [0.0] * tiles), list(switch_on_s or [0.0] * tiles)
         if tiles < 1 or len(ppm) != tiles or len(switch_on_s) != tiles:
             raise UsageError(
                 f"an array of {tiles} tiles got {len(ppm)} clock errors and {len(switch_on_s)} switch-on "
                 "times; give one of each per tile"
             )
-        doubles = c_double * tiles
-        boot = None if bootloader is None else os.fsencode(bootloader)
-        self._handle = library().tilenca_array_new(
-            os.fsencode(image), boot, tiles, doubles(*ppm), doubles(*switch_on_s)
-        )
-        if not self._handle:
-            raise image_error(last_error())
+        path = new("char[]", os.fsencode(image))
+        boot = library().ffi.NULL if bootloader is None else new("char[]", os.fsencode(bootloader))
+        try:
+            self._handle = call("array_new", path, boot, tiles, ppm, switch_on_s)
+        except UsageError as error:
+            raise image_error(str(error)) from None
         self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
         for link in links:
             self.link(*link)
         self.set_threads(threads)
 
     @property
-    def handle(self) -> int:
+    def handle(self) -> Any:
         """The array as the C library knows it.
 
         Raises:
@@ -108,14 +107,14 @@ class Array:
     def add_tile(self, ppm: float = 0.0, switch_on_s: float | None = None) -> EmulatedTile:
         """One more tile, switched on at that time (default: now), without cables."""
         start_s = self.time_s if switch_on_s is None else switch_on_s
-        library().tilenca_array_add_tile(self.handle, ppm, start_s)
+        call("array_add_tile", self.handle, ppm, start_s)
         self._tiles.append(EmulatedTile(self, len(self._tiles)))
         return self._tiles[-1]
 
     def remove_tile(self, tile: int) -> None:
         """Switches a tile off and takes its cables away; the others keep their numbers."""
         self._check_end(tile, 0)
-        library().tilenca_array_remove_tile(self.handle, tile)
+        call("array_remove_tile", self.handle, tile)
 
     def link(self, tile: int, side: int, other: int, other_side: int) -> None:
         """Lays a cable between two sides."""
@@ -123,22 +122,22 @@ class Array:
         self._check_end(other, other_side)
         if tile == other:
             raise UsageError(f"link {(tile, side, other, other_side)}: a cable joins two tiles")
-        check(library().tilenca_array_link(self.handle, tile, side, other, other_side) == 0)
+        call("array_link", self.handle, tile, side, other, other_side)
 
     def unlink(self, tile: int, side: int) -> None:
         """Takes the cable at a side away."""
         self._check_end(tile, side)
-        check(library().tilenca_array_unlink(self.handle, tile, side) == 0)
+        call("array_unlink", self.handle, tile, side)
 
     def cut(self, tile: int, side: int) -> None:
         """Cuts the cable at a side: nothing gets through any more, and both ends read high."""
         self._check_end(tile, side)
-        check(library().tilenca_array_connect(self.handle, tile, side, False) == 0)
+        call("array_connect", self.handle, tile, side, False)
 
     def mend(self, tile: int, side: int) -> None:
         """Mends a cable that was cut."""
         self._check_end(tile, side)
-        check(library().tilenca_array_connect(self.handle, tile, side, True) == 0)
+        call("array_connect", self.handle, tile, side, True)
 
     def set_fault(self, tile: int, side: int, fault: LinkFault, seed: int = 0) -> None:
         """Spoils the direction that leaves a side, from now on; `LinkFault()` makes it whole again.
@@ -151,19 +150,15 @@ class Array:
         if not in_range or fault.baud < 0:
             raise UsageError(f"{fault}: loss and flip are 0 to 1, delay_s 0 to {MOST_DELAY_S}, baud above 0")
         number = seed * len(self) * len(SIDES) + tile * len(SIDES) + side
-        check(
-            library().tilenca_array_set_fault(
-                self.handle, tile, side, fault.loss, fault.flip, fault.delay_s, fault.baud, number % 2**64
-            )
-            == 0
-        )
+        given = new("tilenca_wire_fault*", (fault.loss, fault.flip, fault.delay_s, fault.baud))
+        call("array_set_fault", self.handle, tile, side, given, number % 2**64)
 
     def fault_counts(self, tile: int, side: int) -> FaultCounts:
         """What the direction that leaves a side has lost and flipped, while it was told to."""
         self._check_end(tile, side)
-        counts = (c_uint64 * 3)()
-        check(library().tilenca_array_fault_counts(self.handle, tile, side, counts) == 0)
-        return FaultCounts(counts[0], counts[1], counts[2])
+        counts = new("tilenca_wire_counts*")
+        call("array_fault_counts", self.handle, tile, side, counts)
+        return FaultCounts(counts.bytes, counts.lost, counts.flipped)
 
     def _check_end(self, tile: int, side: int) -> None:
         if not 0 <= tile < len(self) or not 0 <= side < len(SIDES):
@@ -177,7 +172,7 @@ class Array:
         """How many threads share the work; they change nothing else."""
         if threads < 1:
             raise UsageError(f"{threads} threads; at least 1")
-        library().tilenca_array_set_threads(self.handle, threads)
+        call("array_set_threads", self.handle, threads)
 
     def run(self, seconds: float) -> None:
         """Runs all tiles for a while; returns early while a tile is halted at a breakpoint.
@@ -185,13 +180,13 @@ class Array:
         Raises:
             TilencaError: a tile stopped at a fault; the message names tile, place and fact.
         """
-        if library().tilenca_array_run(self.handle, seconds):
+        if call("array_run", self.handle, seconds):
             raise TilencaError(next(tile.fault for tile in self._tiles if tile.fault))
 
     @property
     def time_s(self) -> float:
         """Seconds of emulated time since the array began, a whole number of 16 us."""
-        return float(library().tilenca_array_time(self.handle))
+        return float(call("array_time", self.handle))
 
     @property
     def halted(self) -> list[EmulatedTile]:
@@ -205,9 +200,9 @@ class Array:
 
         Breakpoints, marks, probes and taps are the debugger's, and stay out.
         """
-        start = POINTER(c_uint8)()
-        count = library().tilenca_array_save(self.handle, byref(start))
-        return string_at(start, count)
+        start = new("uint8_t*[]", 1)
+        count = call("array_save", self.handle, start)
+        return bytes(library().ffi.buffer(start[0], count))
 
     def restore(self, snapshot: bytes) -> None:
         """Goes to the moment at which `save` was called, in this array or another of the same image.
@@ -216,9 +211,11 @@ class Array:
             UsageError: it is no snapshot, or of another image. The array is of no use then, unless another
                 `restore` succeeds.
         """
-        if library().tilenca_array_load(self.handle, snapshot, len(snapshot)):
-            raise UsageError(f"snapshot: {last_error()}; save it anew")
-        count = library().tilenca_array_size(self.handle)
+        try:
+            call("array_load", self.handle, snapshot, len(snapshot))
+        except UsageError as error:
+            raise UsageError(f"snapshot: {error}; save it anew") from None
+        count = call("array_size", self.handle)
         for tile in self._tiles[count:]:
             tile.retire()
         del self._tiles[count:]
@@ -233,9 +230,9 @@ class Array:
         Raises:
             UsageError: there is none of that name.
         """
-        address, size = c_uint32(), c_uint32()
-        check(library().tilenca_array_symbol(self.handle, name.encode(), address, size) == 0)
-        return address.value, size.value
+        address, size = new("uint32_t*"), new("uint32_t*")
+        call("array_symbol", self.handle, name.encode(), address, size)
+        return address[0], size[0]
 
     def code_address(self, place: str | int) -> int:
         """The byte address in flash of a function, or the number given."""
@@ -246,7 +243,7 @@ class Array:
 
     def function_at(self, address: int) -> str:
         """The function that contains a byte of flash, or ""."""
-        return str(library().tilenca_array_function_at(self.handle, address).decode())
+        return text(call("array_function_at", self.handle, address))
 
     def __len__(self) -> int:
         return len(self._tiles)
@@ -259,8 +256,8 @@ class Array:
 
     def close(self) -> None:
         """Frees the tiles; the array cannot be used afterwards."""
-        if self._handle:
-            library().tilenca_array_free(self._handle)
+        if self._handle is not None:
+            call("array_free", self._handle)
             self._handle = None
 
     def __del__(self) -> None:

@@ -1,11 +1,12 @@
 """Eyes on an emulated tile's pins: edges, the bytes that they spell, and waveform files for GTKWave."""
 
 from collections.abc import Callable, Sequence
-from ctypes import c_double, c_uint8
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from tilenca.emulator.library import check, library
+from tilenca.base.errors import UsageError
+from tilenca.emulator.library import call, new
 
 CHUNK = 4096
 # A cycle of 16 MHz is 62.5 ns.
@@ -56,50 +57,57 @@ class WireFrame:
     data: bytes
 
 
+def pin_port(port: str) -> bytes:
+    """A port's letter as the library wants it.
+
+    Raises:
+        UsageError: it is not one letter.
+    """
+    if len(port) != 1 or not port.isascii():
+        raise UsageError(f"no port '{port}'; ports are A to L without I")
+    return port.encode()
+
+
 class PinProbe:
     """The edges of one pin since it was made. Made by `EmulatedTile.probe`."""
 
-    def __init__(self, handle: Callable[[], int], tile: int, port: str, bit: int) -> None:
+    def __init__(self, handle: Callable[[], Any], tile: int, port: str, bit: int) -> None:
         self.name = f"P{port}{bit}"
         self.tile = tile
         self._handle = handle
-        self._number = library().tilenca_probe_new(handle(), tile, port.encode(), bit, -1.0)
-        check(self._number >= 0)
+        self._number = call("probe_new", handle(), tile, pin_port(port), bit, -1.0)
 
     @property
     def level(self) -> bool:
         """The level before the first edge that has not been read yet."""
-        return bool(library().tilenca_probe_level(self._handle(), self._number))
+        return bool(call("probe_level", self._handle(), self._number))
 
     def read(self) -> list[Edge]:
         """The edges since the last call, in order."""
-        times, levels = (c_double * CHUNK)(), (c_uint8 * CHUNK)()
+        times, levels = new("double[]", CHUNK), new("uint8_t[]", CHUNK)
         edges: list[Edge] = []
-        while count := library().tilenca_probe_edges(self._handle(), self._number, times, levels, CHUNK):
-            edges += [Edge(time, bool(level)) for time, level in zip(times[:count], levels, strict=False)]
+        while count := call("probe_edges", self._handle(), self._number, times, levels, CHUNK):
+            edges += [Edge(times[i], bool(levels[i])) for i in range(count)]
         return edges
 
     def close(self) -> None:
         """Looks away; costs nothing any more."""
-        library().tilenca_probe_free(self._handle(), self._number)
+        call("probe_free", self._handle(), self._number)
 
 
 class WireTap:
     """The bytes on one wire since it was made. Made by `EmulatedTile.tap`."""
 
-    def __init__(self, handle: Callable[[], int], tile: int, port: str, bit: int, baud: float) -> None:
+    def __init__(self, handle: Callable[[], Any], tile: int, port: str, bit: int, baud: float) -> None:
         self._handle = handle
-        self._number = library().tilenca_probe_new(handle(), tile, port.encode(), bit, baud)
-        check(self._number >= 0)
+        self._number = call("probe_new", handle(), tile, pin_port(port), bit, baud)
         self._frame = bytearray()
 
     def read(self) -> list[WireByte]:
         """The bytes since the last call, in order."""
-        times, values, errors = (c_double * CHUNK)(), (c_uint8 * CHUNK)(), (c_uint8 * CHUNK)()
+        times, values, errors = new("double[]", CHUNK), new("uint8_t[]", CHUNK), new("uint8_t[]", CHUNK)
         seen: list[WireByte] = []
-        while count := library().tilenca_probe_bytes(
-            self._handle(), self._number, times, values, errors, CHUNK
-        ):
+        while count := call("probe_bytes", self._handle(), self._number, times, values, errors, CHUNK):
             seen += [WireByte(times[i], values[i], bool(errors[i])) for i in range(count)]
         return seen
 
@@ -116,7 +124,7 @@ class WireTap:
 
     def close(self) -> None:
         """Looks away; costs nothing any more."""
-        library().tilenca_probe_free(self._handle(), self._number)
+        call("probe_free", self._handle(), self._number)
 
 
 def _identifier(number: int) -> str:

@@ -25,7 +25,7 @@ def run_side_by_side(
         Each job and its result, in the order of `jobs`.
 
     Raises:
-        What `run` raises: the first failure ends all.
+        Exception: `run` raised it; the first failure ends all.
     """
     stopped = threading.Event()
     with ThreadPoolExecutor(min(WORKERS, os.cpu_count() or 1)) as pool:

@@ -10,22 +10,24 @@ from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
+from tilenca.base.project import install_remedy, project
 from tilenca.base.signals import held_back
 from tilenca.base.stdio import warn
 
-FIRMWARE_HEX = paths.FIRMWARE_ELF.with_suffix(".hex")
-
 
 def build() -> None:
-    """Builds the firmware; PlatformIO itself knows what is up to date. Its output is shown only if it fails.
+    """Builds the project's firmware, as far as it is not up to date; its output is shown only if it fails.
 
     Raises:
-        BuildError: PlatformIO is missing or the build failed.
+        BuildError: there is no project, PlatformIO is missing, or the build failed.
     """
+    folder = project()
     beside = Path(sys.executable).with_name("pio")
     pio = str(beside) if beside.exists() else shutil.which("pio")
     if pio is None:
-        raise BuildError("PlatformIO is not installed; run `make setup`, or name an image with --hex")
+        raise BuildError(
+            f"PlatformIO is not installed; run: {install_remedy('firmware')}, or name an image with --hex"
+        )
     warn("building the firmware")
     command = [pio, "run", "-e", paths.FIRMWARE_ENV]
     building: subprocess.Popen[bytes] | None = None
@@ -34,7 +36,7 @@ def build() -> None:
             # A process group of its own: what the build started ends with it.
             building = subprocess.Popen(
                 command,
-                cwd=paths.ROOT,
+                cwd=folder,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,

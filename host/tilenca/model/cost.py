@@ -203,12 +203,12 @@ def estimate(size: Dimensions, classes: int, period_ms: int) -> Fit:
 
 
 def firmware_period_ms() -> int:
-    """The period that platformio.ini builds into the firmware.
+    """The period that platformio.ini builds into the firmware of the project, else into the shipped image.
 
     Raises:
         BuildError: it names none.
     """
-    path = paths.ROOT / "platformio.ini"
+    path = (paths.PROJECT or paths.ROOT) / paths.PLATFORMIO_INI
     project = configparser.ConfigParser(interpolation=None)
     try:
         project.read_string(path.read_text(encoding="utf-8"))

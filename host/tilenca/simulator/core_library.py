@@ -3,77 +3,42 @@
 `make setup` builds the library from firmware/include/core and tools/simulator.
 """
 
-import ctypes
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.base import paths
-from tilenca.base.errors import BuildError
+from tilenca.base import native_library
+from tilenca.base.native_library import Library
 from tilenca.model.file import NEIGHBOURHOOD, Model
 
-WIDEST = 0  # kWidest of tools/simulator/update.h
+WIDEST = 0  # as many cells side by side as the processor can
 
-LIBRARY = paths.BUILD / "simulator" / "libtilenca_core.so"
-
-
-class CModel(ctypes.Structure):
-    """`TilencaModel` of tools/simulator/core_api.cpp, good for as long as the arrays it was made of."""
-
-    _fields_ = (
-        *((name, ctypes.c_uint8) for name in ("channels", "hidden1", "hidden2", "classes")),
-        *((f"{kind}{layer}", ctypes.c_void_p) for layer in (1, 2, 3) for kind in "wb"),
-    )
-
-    @classmethod
-    def of(cls, model: Model) -> "CModel":
-        """The model's sizes, and the addresses of its integer weights."""
-        weights = [np.ascontiguousarray(model.integer[name]) for name in model.dimensions.shapes()]
-        size = model.dimensions
-        made = cls(size.channels, size.hidden1, size.hidden2, len(model.labels), *map(address, weights))
-        made.weights = weights  # lives as long as the bare addresses do
-        return made
+LIBRARY = native_library.find("simulator").library
 
 
-def address(array: NDArray[Any]) -> int:
-    """Where a contiguous array begins; the caller keeps it alive."""
-    return int(array.ctypes.data)
-
-
-@cache
-def _library(path: Path) -> ctypes.CDLL:
-    if not path.is_file():
-        raise BuildError(f"{path}: not built yet; run: make setup")
-    pointer, count = ctypes.c_void_p, ctypes.c_int32
-    try:
-        library = ctypes.CDLL(str(path))
-        for name, arguments, result in (
-            ("update_cells", [ctypes.POINTER(CModel), pointer, pointer, ctypes.c_size_t, count], count),
-            ("tissue_new", [ctypes.POINTER(CModel), pointer, pointer, pointer], pointer),
-            ("tissue_delete", [pointer], None),
-            ("tissue_run", [pointer, count, count, pointer, pointer], None),
-            ("tissue_updates", [pointer], ctypes.c_uint64),
-            ("plan_new", [pointer], pointer),
-            ("plan_delete", [pointer], None),
-            ("plan_next", [pointer, pointer], count),
-        ):
-            function = getattr(library, f"tilenca_{name}")
-            function.argtypes, function.restype = arguments, result
-    except (OSError, AttributeError) as error:
-        raise BuildError(f"{path}: not usable ({error}); remove it and run: make setup") from error
-    return library
-
-
-def library() -> ctypes.CDLL:
+def library() -> Library:
     """The compiled simulator.
 
     Raises:
-        BuildError: it is not built, or another one; the message says how to build it.
+        BuildError: it is not built, or cannot be used; the message says how to build it.
     """
-    return _library(LIBRARY)
+    return native_library.load("simulator")
+
+
+def pointer(array: NDArray[Any], kind: str) -> Any:
+    """A contiguous array as a C array of `kind`; keeps it alive."""
+    return library().ffi.from_buffer(f"{kind}[]", array)
+
+
+def model_struct(model: Model) -> tuple[Any, list[Any]]:
+    """The model as `tilenca_model`, and what must live as long as that."""
+    size = model.dimensions
+    names = size.shapes()  # in the order of the structure
+    kinds = {"w": "int8_t", "b": "int16_t"}
+    weights = [pointer(np.ascontiguousarray(model.integer[name]), kinds[name[0]]) for name in names]
+    sizes = (size.channels, size.hidden1, size.hidden2, len(model.labels))
+    return library().ffi.new("tilenca_model*", (*sizes, *weights)), weights
 
 
 def update_cells(
@@ -104,9 +69,8 @@ def update_cells(
     new_states = np.array(states, dtype=np.int16, order="C")
     flat_inputs = np.ascontiguousarray(inputs)
     count = new_states.size // channels
-    done = library().tilenca_update_cells(
-        CModel.of(model), address(new_states), address(flat_inputs), count, lanes
-    )
-    if not done:
+    network, _weights = model_struct(model)
+    cells = pointer(new_states, "int16_t"), pointer(flat_inputs, "int8_t")
+    if library().call("update_cells", network, *cells, count, lanes):
         raise ValueError(f"this machine cannot compute {lanes} cells side by side; use WIDEST")
     return new_states

@@ -4,7 +4,6 @@
 tick, for engines that compute other states; both follow the same schedule, number by number.
 """
 
-import ctypes
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,35 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.model.file import Model
-from tilenca.simulator.core_library import CModel, address, library
+from tilenca.simulator.core_library import library, model_struct, pointer
 
-TICKS_PER_STEP = 20  # kTicks of schedule.h: the resolution of a step on clocks
-UNITS_PER_STEP = TICKS_PER_STEP << 16  # kUnits of a tick
+TICKS_PER_STEP = 20  # TILENCA_TICKS of simulator.h: the resolution of a step on clocks
+UNITS_PER_STEP = TICKS_PER_STEP << 16  # TILENCA_UNITS_PER_TICK
 LOSS_UNITS = 1 << 32
 DARK = -1
-FAULTS = ("none", "dead", "stuck", "away")  # TilencaFault
+FAULTS = ("none", "dead", "stuck", "away")  # TILENCA_FAULT_... in their order
 NOBODY = -1
 
 Cells = NDArray[np.int32]
-
-
-class _CSetup(ctypes.Structure):
-    """`TilencaSetup` of tools/simulator/setup.h."""
-
-    _fields_ = (
-        ("runs", ctypes.c_int32),
-        ("cells", ctypes.c_int32),
-        *((name, ctypes.c_void_p) for name in ("starts", "neighbours", "alive", "target", "seeds")),
-        ("loss", ctypes.c_uint64),
-        ("zeros", ctypes.c_uint8),
-        ("clocks", ctypes.c_uint8),
-        ("start", ctypes.c_int64),
-        *((name, ctypes.c_void_p) for name in ("first", "period", "latency")),
-        ("fault", ctypes.c_uint8),
-        ("faulty", ctypes.c_void_p),
-        ("begin", ctypes.c_int64),
-        ("end", ctypes.c_int64),
-    )
 
 
 @dataclass(frozen=True)
@@ -83,34 +63,32 @@ def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
     return counted
 
 
-def _as_c(setup: Setup) -> _CSetup:
-    """The structure; it keeps the arrays that it points at."""
+def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
+    """The setup as `tilenca_setup`, and what must live as long as that."""
     first, period, latency, start = setup.clocks or (np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
-    arrays: dict[str, NDArray[Any]] = {
-        "starts": setup.starts.astype(np.int32),
-        "neighbours": np.ascontiguousarray(setup.neighbours, np.int32),
-        "alive": setup.alive.astype(np.uint8),
-        "target": setup.target.astype(np.int8),
-        "seeds": np.ascontiguousarray(setup.seeds, np.uint64),
-        "first": units(first),
-        "period": units(period),
-        "latency": units(latency),
-        "faulty": setup.faulty.astype(np.int32),
+    arrays = {
+        "starts": pointer(setup.starts.astype(np.int32), "int32_t"),
+        "neighbours": pointer(np.ascontiguousarray(setup.neighbours, np.int32), "int32_t"),
+        "alive": pointer(setup.alive.astype(np.uint8), "uint8_t"),
+        "target": pointer(setup.target.astype(np.int8), "int8_t"),
+        "seeds": pointer(np.ascontiguousarray(setup.seeds, np.uint64), "uint64_t"),
+        "first": pointer(units(first), "int64_t"),
+        "period": pointer(units(period), "int64_t"),
+        "latency": pointer(units(latency), "int64_t"),
+        "faulty": pointer(setup.faulty.astype(np.int32), "int32_t"),
     }
-    made = _CSetup(
-        runs=len(setup.seeds),
-        cells=len(setup.alive),
-        loss=round(setup.loss * LOSS_UNITS),
-        zeros=setup.zeros,
-        clocks=setup.clocks is not None,
-        start=int(units(start)),
-        fault=FAULTS.index(setup.fault),
-        begin=setup.begin,
-        end=setup.end,
-        **{name: address(array) for name, array in arrays.items()},
-    )
-    made.arrays = arrays
-    return made
+    numbers = {
+        "runs": len(setup.seeds),
+        "cells": len(setup.alive),
+        "loss": round(setup.loss * LOSS_UNITS),
+        "zeros": setup.zeros,
+        "clocks": setup.clocks is not None,
+        "start": int(units(start)),
+        "fault": FAULTS.index(setup.fault),
+        "begin": setup.begin,
+        "end": setup.end,
+    }
+    return library().ffi.new("tilenca_setup*", numbers | arrays), list(arrays.values())
 
 
 class CompiledRollout:
@@ -133,17 +111,15 @@ class CompiledRollout:
         if states.dtype != np.int16 or not states.flags.c_contiguous:
             raise ValueError(f"states are {states.dtype}, wanted: contiguous int16")
         self._runs, self._cells = len(setup.seeds), len(setup.alive)
-        self._alive = _as_c(setup), states, shown  # as long as C points at them
-        self._library, self._rollout = library(), None
-        self._rollout = self._library.tilenca_tissue_new(
-            CModel.of(model), ctypes.byref(self._alive[0]), address(states), address(shown)
-        )
-        if not self._rollout:
-            raise MemoryError
+        given, arrays = _setup_struct(setup)
+        network, _weights = model_struct(model)
+        cells = pointer(states, "int16_t"), pointer(shown, "int8_t")
+        self._alive = arrays, cells  # as long as C points at them
+        self._batch = library().call("grid_batch_new", network, given, *cells)
 
     def __del__(self) -> None:
-        if getattr(self, "_rollout", None):
-            self._library.tilenca_tissue_delete(self._rollout)
+        if hasattr(self, "_batch"):
+            library().call("grid_batch_free", self._batch)
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
         """Runs as many steps as `right` has rows.
@@ -156,23 +132,15 @@ class CompiledRollout:
         for array, width in ((right, self._runs), (shown, self._cells)):
             if array is not None and not (array.flags.c_contiguous and array.shape == (len(right), width)):
                 raise ValueError(f"a result is {array.shape}, wanted: ({len(right)}, {width}), contiguous")
-        self._library.tilenca_tissue_run(
-            self._rollout, len(right), threads, address(right), None if shown is None else address(shown)
+        trajectory = library().ffi.NULL if shown is None else pointer(shown, "int8_t")
+        library().call(
+            "grid_batch_run", self._batch, len(right), threads, pointer(right, "float"), trajectory
         )
 
     @property
     def updates(self) -> int:
         """Cell updates computed in all."""
-        return int(self._library.tilenca_tissue_updates(self._rollout))
-
-
-class _CTick(ctypes.Structure):
-    """`TilencaRound` of tools/simulator/core_api.cpp."""
-
-    _fields_ = (
-        *((name, ctypes.POINTER(ctypes.c_int32)) for name in ("gone", "born", "arrivals", "updates")),
-        *((f"{name}_count", ctypes.c_int32) for name in ("gone", "born", "arrivals", "updates")),
-    )
+        return int(library().call("grid_batch_updates", self._batch))
 
 
 @dataclass(frozen=True)
@@ -202,30 +170,29 @@ class TickSchedule:
     """The schedule of runs, without their states."""
 
     def __init__(self, setup: Setup) -> None:
-        self._setup = _as_c(setup)
-        self._library = library()
-        self._tick = _CTick()
-        self._schedule = self._library.tilenca_plan_new(ctypes.byref(self._setup))
-        if not self._schedule:
-            raise MemoryError
+        given, self._alive = _setup_struct(setup)
+        self._tick = library().ffi.new("tilenca_tick*")
+        self._schedule = library().call("schedule_new", given)
 
     def __del__(self) -> None:
-        if getattr(self, "_schedule", None):
-            self._library.tilenca_plan_delete(self._schedule)
+        if hasattr(self, "_schedule"):
+            library().call("schedule_free", self._schedule)
 
     def next(self) -> Tick:
         """Plans the next tick."""
-        last = bool(self._library.tilenca_plan_next(self._schedule, ctypes.byref(self._tick)))
+        last = bool(library().call("schedule_next", self._schedule, self._tick))
+        senders, arrives = _events(self._cells("deliveries", 2))
+        updating, absent = _events(self._cells("updates", 2))
+        gone, born = self._cells("switched_off", 1)[:, 0], self._cells("switched_on", 1)[:, 0]
+        return Tick(gone, born, senders, arrives, updating, absent, last)
 
-        def cells(name: str, width: int) -> Cells:
-            count = getattr(self._tick, f"{name}_count")
-            if count == 0:
-                return np.zeros((0, width), np.int32)
-            return np.ctypeslib.as_array(getattr(self._tick, name), (count, width)).copy()
-
-        senders, arrives = _events(cells("arrivals", 2))
-        updating, absent = _events(cells("updates", 2))
-        return Tick(cells("gone", 1)[:, 0], cells("born", 1)[:, 0], senders, arrives, updating, absent, last)
+    def _cells(self, name: str, width: int) -> Cells:
+        """A list of the tick as (its length, width)."""
+        count = getattr(self._tick, f"{name}_count")
+        if count == 0:
+            return np.zeros((0, width), np.int32)
+        memory = library().ffi.buffer(getattr(self._tick, name), 4 * width * count)
+        return np.frombuffer(memory, np.int32).reshape(count, width).copy()
 
 
 def _events(pairs: Cells) -> tuple[Cells, NDArray[np.bool_]]:

@@ -1,6 +1,7 @@
 """Checks that PyTorch and the wanted device are there."""
 
 from tilenca.base.errors import UsageError
+from tilenca.base.project import install_remedy
 
 
 def check_device(device: str) -> None:
@@ -15,7 +16,9 @@ def check_device(device: str) -> None:
     try:
         import torch
     except ImportError as error:
-        raise UsageError("training needs PyTorch, which is not installed; run: make setup-train") from error
+        raise UsageError(
+            f"training needs PyTorch, which is not installed; run: {install_remedy('train')}"
+        ) from error
     if device not in ("cpu", "cuda"):
         raise UsageError(f"--device {device}: use cpu or cuda")
     if device == "cuda" and not torch.cuda.is_available():

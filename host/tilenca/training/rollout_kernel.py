@@ -1,47 +1,15 @@
-"""Training's inner loop, compiled for this machine: tools/training behind torch tensors.
+"""Training's inner loop, compiled for this machine: tools/rollout_kernel behind torch tensors.
 
 `make setup` builds the library. `rollout.rollout_by_autograd` computes the same in plain PyTorch.
 """
 
-import ctypes
-from functools import cache
-from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
 
-from tilenca.base import paths
-from tilenca.base.errors import BuildError
-
-LIBRARY = paths.BUILD / "training" / "libtilenca_life.so"
-PADDING = 16  # twin of kPadding in tools/training/lanes.h
-
-
-class _CNet(ctypes.Structure):
-    """`Net` of tools/training/life.h."""
-
-    _fields_ = (
-        *((name, ctypes.c_int32) for name in ("channels", "hidden1", "hidden2", "rounded")),
-        ("limit", ctypes.c_float),
-        *((name, ctypes.c_void_p) for name in ("w1", "b1", "w2", "b2", "w3", "b3")),
-    )
-
-
-class _CRollout(ctypes.Structure):
-    """`Life` of the same header."""
-
-    _fields_ = (
-        ("cells", ctypes.c_int32),
-        ("ticks", ctypes.c_int32),
-        *((name, ctypes.c_void_p) for name in ("counts", "updating", "reads", "arrives")),
-    )
-
-
-class _CTape(ctypes.Structure):
-    """`Tape` of the same header."""
-
-    _fields_ = tuple((name, ctypes.c_void_p) for name in ("seen", "hidden1", "hidden2", "after"))
+from tilenca.base import native_library
+from tilenca.base.native_library import Library
 
 
 class Tape(NamedTuple):
@@ -55,25 +23,17 @@ class Tape(NamedTuple):
 
 def make_tape(updates: int, *widths: int) -> Tape:
     """An unwritten tape of `updates` rows; widths of perception, hidden layers and state."""
-    return Tape(*(torch.empty(updates, -(-width // PADDING) * PADDING)[:, :width] for width in widths))
+    block: int = library().lib.TILENCA_ROLLOUT_PADDING
+    return Tape(*(torch.empty(updates, -(-width // block) * block)[:, :width] for width in widths))
 
 
-@cache
-def library(path: Path = LIBRARY) -> ctypes.CDLL:
+def library() -> Library:
     """The compiled library.
 
     Raises:
         BuildError: it is not built, or not usable; the message says what to do.
     """
-    if not path.is_file():
-        raise BuildError(f"{path}: not built yet; run: make setup-train")
-    try:
-        found = ctypes.CDLL(str(path))
-        found.tilenca_life_forward.restype = found.tilenca_life_backward.restype = None
-        found.tilenca_life_kind.restype = ctypes.c_char_p
-    except (OSError, AttributeError) as error:
-        raise BuildError(f"{path}: not usable ({error}); remove it and run: make setup-train") from error
-    return found
+    return native_library.load("rollout")
 
 
 class KernelRollout:
@@ -101,36 +61,36 @@ class KernelRollout:
     ) -> None:
         self._alive = [tensor.contiguous() for tensor in (*weights, counts, updating, reads, arrives)]
         w1, _, w2, _, w3, _ = weights
-        pointers = [tensor.data_ptr() for tensor in self._alive]
+        kinds = (*["float"] * len(weights), "int64_t", "int32_t", "int32_t", "uint8_t")
+        pointers = [_pointer(tensor, kind) for tensor, kind in zip(self._alive, kinds, strict=True)]
         self.widths = (w1.shape[1], len(w1), len(w2), len(w3))
+        sizes = (len(w3), len(w1), len(w2), limit is not None)
         infinite = float("inf") if limit is None else limit
-        self._net = _CNet(len(w3), len(w1), len(w2), limit is not None, infinite, *pointers[:6])
-        self._rollout = _CRollout(cells, len(counts), *pointers[6:])
+        new = library().ffi.new
+        self._network = new("tilenca_rollout_network*", (*sizes, infinite, *pointers[:6]))
+        self._schedule = new("tilenca_rollout_schedule*", (cells, len(counts), *pointers[6:]))
         self.updates = len(updating)
 
     def forward(self, state: Tensor) -> Tape:
         """Runs the updates; `state` (N, C) float32 is changed in place."""
         tape = make_tape(self.updates, *self.widths)
-        library().tilenca_life_forward(
-            ctypes.byref(self._net),
-            ctypes.byref(self._rollout),
-            ctypes.c_void_p(state.data_ptr()),
-            ctypes.byref(_pointers(tape)),
-        )
+        self._run("rollout_forward", state, tape)
         return tape
 
     def backward(self, d_state: Tensor, tape: Tape) -> Tape:
         """Gradients of the sums of every layer; `d_state` (N, C) float32 is changed in place."""
         gradients = make_tape(self.updates, 0, *self.widths[1:])
-        library().tilenca_life_backward(
-            ctypes.byref(self._net),
-            ctypes.byref(self._rollout),
-            ctypes.c_void_p(d_state.data_ptr()),
-            ctypes.byref(_pointers(tape)),
-            ctypes.byref(_pointers(gradients)),
-        )
+        self._run("rollout_backward", d_state, tape, gradients)
         return gradients
 
+    def _run(self, function: str, state: Tensor, *tapes: Tape) -> None:
+        places = [
+            library().ffi.new("tilenca_rollout_tape*", [_pointer(tensor, "float") for tensor in tape])
+            for tape in tapes
+        ]
+        library().call(function, self._network, self._schedule, _pointer(state, "float"), *places)
 
-def _pointers(tape: Tape) -> _CTape:
-    return _CTape(*(tensor.data_ptr() for tensor in tape))
+
+def _pointer(tensor: Tensor, kind: str) -> Any:
+    """Where a tensor's elements begin; the caller keeps it alive."""
+    return library().ffi.cast(f"{kind}*", tensor.data_ptr())

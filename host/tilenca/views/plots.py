@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.project import install_remedy
 
 try:
     from matplotlib import style
@@ -22,7 +23,9 @@ try:
     from matplotlib.layout_engine import ConstrainedLayoutEngine
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 except ImportError as error:
-    raise UsageError("plots need matplotlib, which is not installed; run: make setup-train") from error
+    raise UsageError(
+        f"plots need matplotlib, which is not installed; run: {install_remedy('plot')}"
+    ) from error
 
 HISTORY = ("iteration", "loss", "agreement")
 SMOOTHED = 60  # lines of fewer points are drawn as they are

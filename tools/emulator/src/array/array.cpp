@@ -198,10 +198,8 @@ void Array::run_for(double ticks) {
 }
 
 void Array::set_threads(unsigned threads) {
-    workers_ = nullptr;
-    if (threads > 1) {
-        workers_ = std::make_unique<Workers>(threads, [this](unsigned i) { run_tile(i); });
-    }
+    const auto work = [this](unsigned i) { run_tile(i); };
+    workers_ = threads > 1 ? std::make_unique<Workers>(threads, work) : nullptr;
 }
 
 std::string Array::fault(unsigned index) {

@@ -14,6 +14,7 @@
 
 namespace tilenca {
 
+constexpr unsigned kMostTiles = 4096; // of an array
 constexpr double kQuantumTicks = 256; // the latency's margin covers the last instruction of a quantum
 
 class Array {

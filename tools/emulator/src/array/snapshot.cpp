@@ -9,7 +9,6 @@ namespace {
 
 constexpr uint32_t kMagic = 0x53434C54; // "TLCS"
 constexpr uint32_t kVersion = 1;        // one more whenever any state() changes
-constexpr uint32_t kMostTiles = 4096;
 
 // FNV-1a.
 uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u) {

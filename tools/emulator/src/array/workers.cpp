@@ -1,6 +1,7 @@
 #include "array/workers.h"
 
 #include <chrono>
+#include <utility>
 
 namespace tilenca {
 
@@ -22,12 +23,21 @@ void relax() {
 
 Workers::Workers(unsigned threads, std::function<void(unsigned)> work)
     : threads_(threads), work_(std::move(work)), parts_(new Part[threads]), is_manned_(threads, 1) {
-    for (unsigned i = 1; i < threads; i++) {
-        helpers_.emplace_back([this, i] { help(i); });
+    try {
+        for (unsigned i = 1; i < threads; i++) {
+            helpers_.emplace_back([this, i] { help(i); });
+        }
+    } catch (...) { // no more threads are to be had
+        stop();
+        throw;
     }
 }
 
 Workers::~Workers() {
+    stop();
+}
+
+void Workers::stop() {
     ends_ = true;
     for (std::thread& helper : helpers_) {
         helper.join();
@@ -55,7 +65,17 @@ unsigned Workers::work_off(Part& part, uint32_t round) {
                                                 std::memory_order_acq_rel)) {
             return calls;
         }
-        work_(next);
+        call(next);
+    }
+}
+
+// An exception that left a thread's function would end the program.
+void Workers::call(unsigned number) noexcept {
+    try {
+        work_(number);
+    } catch (...) {
+        const std::lock_guard<std::mutex> lock(failing_);
+        failure_ = std::current_exception();
     }
 }
 
@@ -123,6 +143,9 @@ void Workers::share(unsigned count) {
         } else {
             std::this_thread::yield();
         }
+    }
+    if (failure_ != nullptr) {
+        std::rethrow_exception(std::exchange(failure_, nullptr));
     }
 }
 

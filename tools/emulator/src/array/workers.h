@@ -7,8 +7,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -24,7 +26,8 @@ class Workers {
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
 
-    // Calls `work` with 0 .. count - 1, each once, on all threads, and returns when all calls have.
+    // Calls `work` with 0 .. count - 1, each once, on all threads, and returns when all calls have. What a
+    // call throws, this throws when all have ended.
     void share(unsigned count);
     // Until the next call of `share` the helpers need not look out for work so often.
     void rest() { resting_ = true; }
@@ -46,6 +49,8 @@ class Workers {
     };
 
     static Order order_of(const Part& part);
+    void call(unsigned number) noexcept;
+    void stop();
     void help(unsigned own);
     // Does what is left of a part in that round; returns how many calls that were.
     unsigned work_off(Part& part, uint32_t round);
@@ -58,6 +63,8 @@ class Workers {
     std::vector<std::thread> helpers_;
     std::vector<char> is_manned_; // whether each part's owner was there lately
     uint32_t round_ = 0;
+    std::mutex failing_; // guards failure_ while calls are under way
+    std::exception_ptr failure_;
     alignas(64) std::atomic<bool> ends_{false};
     std::atomic<bool> resting_{true};
 };
