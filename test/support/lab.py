@@ -17,6 +17,9 @@ from tilenca.shapes.file import load_task
 LIMIT_S = 600
 # avrdude waits five seconds of everybody's time for an answer: twenty tiles' step must not take that long.
 LONGEST_STEP_S = 0.01
+# While nobody has a port open, as when a command starts, time hardly passes: emulating twenty tiles takes a
+# whole processor.
+IDLE_STEP_S = 0.001
 # No avrdude takes so long to react, however busy this machine is.
 STANDSTILL_S = 10.0
 # A bootloader's answer: this byte, a sequence number, the size (two bytes), a token, the body, a checksum.
@@ -41,6 +44,7 @@ class Lab:
         self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
         self._answers: dict[ServedTile, bytes] = {}  # what each bootloader has said of its present one
         self._served: dict[int, ServedTile] = {}
+        self._is_watched = False  # whether a test waits for time to pass
         self._orders: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._serve, daemon=True)
 
@@ -69,7 +73,8 @@ class Lab:
         while True:
             time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
             now_s = time.monotonic()
-            self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S))
+            in_use = self._is_watched or any(port.is_open for port in self._served.values())
+            self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S if in_use else IDLE_STEP_S))
             self._clock.seconds = self.time_s
             while not self._orders.empty():
                 if (order := self._orders.get()) is None:
@@ -122,8 +127,10 @@ class Lab:
     def pass_time(self, seconds: float) -> None:
         """Waits so long in the tiles' own time."""
         end_s = self.time_s + seconds
+        self._is_watched = True
         while self.time_s < end_s:
             self.do(lambda: None)
+        self._is_watched = False
 
     def unplug(self, tile: int) -> None:
         """Its port vanishes, whoever has it open; the tile goes on."""
