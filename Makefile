@@ -42,7 +42,7 @@ test: setup-test ## run every test: the firmware's core on this machine, then ho
 	@$(PIO) run -s -e $(ENV)
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
-	@$(PYTHON) -m pytest
+	@$(PYTHON) -m pytest -n auto --dist worksteal
 
 check: static test ## what to run before every commit: format, lint, imports, types, budgets, tests
 
@@ -100,5 +100,5 @@ wheel: setup-test ## build the source archive and the wheel into dist/, with the
 	@$(TOOL) release.wheel
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/models build/docs build/wheel
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

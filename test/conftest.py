@@ -3,11 +3,21 @@
 import os
 import signal
 import tempfile
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
 
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
+from support.terminal import pty
 
-__all__ = ["arduino", "arduino_core", "avr", "firmware", "talk"]  # fixtures for every room
+__all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
+
+
+# How long an example takes says how busy the machine is, not whether it is right.
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")
 
 
 def pytest_configure() -> None:
@@ -17,5 +27,30 @@ def pytest_configure() -> None:
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    # Without this limit, idle threads of PyTorch take the processors from other tests: ten times the work.
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // workers)))
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
+
+
+@pytest.fixture(scope="session")
+def two_shapes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shape file that is trained in seconds."""
+    path = tmp_path_factory.mktemp("shapes") / "two.toml"
+    path.write_text(
+        '[[shape]]\nlabel = "1"\ngrid = """\n#\n#\n#\n"""\n'
+        '[[shape]]\nlabel = "7"\ngrid = """\n##\n.#\n.#\n"""\n'
+    )
+    return path
+
+
+@pytest.fixture(scope="session")
+def trained_model(two_shapes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model trained on them with seed 5, not interrupted."""
+    from support.training import train  # imports torch, which most tests do without
+
+    out = tmp_path_factory.mktemp("models") / "model"
+    assert train(two_shapes, out) == 0
+    return out

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from tilenca import cli
 from tilenca.base import paths
-from tilenca.base.errors import UsageError
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import load_model
-from tilenca.shapes.batch import Drawings, load_drawings
+from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import load_task
 from tilenca.simulator import core_library
 from tilenca.simulator.engine import States
@@ -231,12 +230,6 @@ def test_a_model_that_is_nowhere_is_refused(capsys: pytest.CaptureFixture[str]) 
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
 
 
-def test_drawings_of_one_label_share_a_class() -> None:
-    drawings: Drawings = load_drawings([paths.SHAPES / "digits-3x3.toml"], labels="0123456789")
-    sevens = [n for n, shape in enumerate(drawings.shapes) if shape.label == "7"]
-    assert drawings.classes[sevens].tolist() == [7, 7]
-
-
 needs_elf = pytest.mark.skipif(
     not paths.FIRMWARE_ELF.exists(), reason="run `make setup` to build the firmware"
 )
@@ -285,15 +278,6 @@ def test_what_the_emulated_tiles_cannot_be_made_to_do_is_refused(
 ) -> None:
     assert cli.main(["evaluate", "--engine", "emulator", *words]) == 2
     assert "tiles as they are" in capsys.readouterr().err
-
-
-def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> None:
-    shapes = tmp_path / "digits.toml"
-    shapes.write_text('[[shape]]\nlabel = "1"\ngrid = "#"\n')
-    with pytest.raises(UsageError, match="another file has that name"):
-        load_drawings([paths.DEFAULT_SHAPES, shapes])
-    with pytest.raises(UsageError, match="all of its drawings"):
-        load_drawings([shapes, shapes])
 
 
 def test_the_suite_repeats_the_numbers_of_the_same_seed(capsys: pytest.CaptureFixture[str]) -> None:

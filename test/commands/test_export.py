@@ -12,9 +12,8 @@ import pytest
 
 from firmware.synthetic_models import random_network
 from tilenca.base import paths
-from tilenca.base.errors import BuildError
 from tilenca.cli import main
-from tilenca.model import cost, packing, render
+from tilenca.model import packing, render
 from tilenca.model.file import Dimensions, Model
 from tilenca.shapes.glyphs import GLYPHS
 
@@ -50,72 +49,6 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 def test_the_committed_files_are_the_shipped_model() -> None:
     assert run("--model", paths.DEFAULT_MODEL, "--check") == 0
-
-
-def test_the_same_model_renders_to_the_same_text(model: Model) -> None:
-    assert render.render(model) == render.render(model)
-
-
-def test_the_compiled_files_hold_exactly_the_model(
-    model: Model, model_directory: Path, firmware: Path, tmp_path: Path
-) -> None:
-    """A small program prints what the rendered files hold, and it is read back."""
-    assert run("--model", model_directory, "--out", firmware) == 0
-    probe = tmp_path / "probe.cpp"
-    probe.write_text(
-        """
-        #include <stdio.h>
-        #include "model/model.h"
-        using namespace tilenca;
-        void print(const Layer& layer) {
-            for (int j = 0; j < layer.outputs; ++j) {
-                Layer::Row row = layer.row(j);
-                for (int i = 0; i < layer.inputs; ++i) printf("%d ", row.next());
-            }
-            for (int j = 0; j < layer.outputs; ++j) printf("%d ", layer.bias(j));
-            for (int j = 0; j < layer.outputs; j += kBlockOutputs) printf("%d ", layer.is_16_bit(j));
-            printf("\\n");
-        }
-        int main() {
-            const Model& m = model::kModel;
-            print(m.network.hidden1); print(m.network.hidden2); print(m.network.output);
-            for (int k = 0; k < m.classes; ++k) {
-                const Look look = m.looks[k];
-                printf("%c %d %d %d %d\\n", look.label, look.segments, look.red, look.green, look.blue);
-            }
-            printf("%04X\\n", m.id);
-        }
-        """
-    )
-    program = tmp_path / "probe"
-    source = firmware / SOURCE
-    subprocess.run(
-        [
-            "g++",
-            "-std=c++14",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            f"-I{firmware}/include",
-            probe,
-            source,
-            "-o",
-            program,
-        ],
-        check=True,
-    )
-    lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
-    for layer, line in zip((1, 2, 3), lines[:3], strict=True):
-        values = np.array(line.split(), dtype=np.int64)
-        narrow = np.array([part.is_16_bit for part in packing.blocks(model, layer)])
-        expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
-        np.testing.assert_array_equal(values, np.concatenate(expected))
-    looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]
-    assert lines[3:] == [*looks, f"{model.model_id:04X}"]
-
-
-def test_a_digit_has_its_own_colour_wherever_it_stands() -> None:
-    assert render.looks_of(("7", "0"))[0].colour == render.looks_of(tuple("0123456789"))[7].colour
 
 
 def test_report_as_json(
@@ -240,44 +173,66 @@ def test_a_directory_that_is_no_model_is_a_usage_error(
     assert "model.json" in capsys.readouterr().err
 
 
-def one_layer(weights: list[list[int]], biases: list[int], layer: int) -> packing.Block:
-    """The only pass of a layer with these weights."""
-    model = random_network(Dimensions(1, 1, 1), 1)
-    integer = dict(model.integer)
-    integer[f"w{layer}"], integer[f"b{layer}"] = np.array(weights, np.int8), np.array(biases, np.int16)
-    (found,) = packing.blocks(replace(model, integer=integer), layer)
-    return found
+SIZE = Dimensions(5, 7, 6)
+HEADER, SOURCE = render.TEMPLATES.values()
 
 
-def test_the_bounds_of_a_pass_are_those_of_its_outermost_outputs() -> None:
-    found = one_layer([[127, -127], [1, 2]], [0, -32768], layer=1)
-    assert (found.least, found.most) == (-3 * 127 - 32768 + 32, 2 * 127 * 127 + 32)
-    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=2)
-    assert (found.least, found.most) == (7 - 127 * 127 + 32, 7 + 127 * 127 + 32), (
-        "activations are not negative"
-    )
-    found = one_layer([[127, -127], [1, 2]], [7, -100], layer=3)
-    assert (found.least, found.most) == (7 - 127 * 127, 7 + 127 * 127), "nothing is rounded"
-
-
-@pytest.mark.parametrize(
-    ("weights", "bias", "layer", "narrow"),
-    [
-        ([127, 127], 32767 - 2 * 127 * 127, 3, True),
-        ([127, 127], 32768 - 2 * 127 * 127, 3, False),
-        ([127, 127], 32767 - 2 * 127 * 127 - 32, 2, True),
-        ([127, 127], 32767 - 2 * 127 * 127 - 31, 2, False),
-        ([-127, -127], -32768 + 2 * 127 * 127, 3, True),
-        ([-127, -127], -32769 + 2 * 127 * 127, 3, False),
-        ([-127, 127], -32769 + 2 * 127 * 127, 3, True),
-        ([-127, 127], -32769 + 2 * 127 * 127 - 32, 1, False),
-    ],
-)
-def test_16_bits_are_used_where_no_input_can_make_them_wrap(
-    weights: list[int], bias: int, layer: int, narrow: bool
+def test_the_compiled_files_hold_exactly_the_model(
+    model: Model, model_directory: Path, firmware: Path, tmp_path: Path
 ) -> None:
-    assert one_layer([weights], [bias], layer).is_16_bit is narrow
-    assert one_layer([[0, 0], weights], [0, bias], layer).is_16_bit is narrow, "the worst output decides"
+    """A small program prints what the rendered files hold, and it is read back."""
+    assert run("--model", model_directory, "--out", firmware) == 0
+    probe = tmp_path / "probe.cpp"
+    probe.write_text(
+        """
+        #include <stdio.h>
+        #include "model/model.h"
+        using namespace tilenca;
+        void print(const Layer& layer) {
+            for (int j = 0; j < layer.outputs; ++j) {
+                Layer::Row row = layer.row(j);
+                for (int i = 0; i < layer.inputs; ++i) printf("%d ", row.next());
+            }
+            for (int j = 0; j < layer.outputs; ++j) printf("%d ", layer.bias(j));
+            for (int j = 0; j < layer.outputs; j += kBlockOutputs) printf("%d ", layer.is_16_bit(j));
+            printf("\\n");
+        }
+        int main() {
+            const Model& m = model::kModel;
+            print(m.network.hidden1); print(m.network.hidden2); print(m.network.output);
+            for (int k = 0; k < m.classes; ++k) {
+                const Look look = m.looks[k];
+                printf("%c %d %d %d %d\\n", look.label, look.segments, look.red, look.green, look.blue);
+            }
+            printf("%04X\\n", m.id);
+        }
+        """
+    )
+    program = tmp_path / "probe"
+    source = firmware / SOURCE
+    subprocess.run(
+        [
+            "g++",
+            "-std=c++14",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            f"-I{firmware}/include",
+            probe,
+            source,
+            "-o",
+            program,
+        ],
+        check=True,
+    )
+    lines = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
+    for layer, line in zip((1, 2, 3), lines[:3], strict=True):
+        values = np.array(line.split(), dtype=np.int64)
+        narrow = np.array([part.is_16_bit for part in packing.blocks(model, layer)])
+        expected = [model.integer[f"w{layer}"].ravel(), model.integer[f"b{layer}"], narrow]
+        np.testing.assert_array_equal(values, np.concatenate(expected))
+    looks = [f"4 {GLYPHS['4']} 5 50 30", f"b {GLYPHS['b']} 0 20 0", f"- {GLYPHS['-']} 0 0 30"]
+    assert lines[3:] == [*looks, f"{model.model_id:04X}"]
 
 
 def test_the_exporter_says_which_sums_have_16_bits(
@@ -292,43 +247,6 @@ def test_the_exporter_says_which_sums_have_16_bits(
     assert "sums of 16 bits: layer 2 0..5, layer 3 0..4; of 24 bits: all others\n" in capsys.readouterr().out
     assert run("--model", tmp_path / "small", "--out", firmware, "--json") == 0
     assert json.loads(capsys.readouterr().out)["outputs_in_16_bits"] == [0, 6, 5]
-
-
-def test_an_accumulator_that_could_wrap_is_refused(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No model file can reach 24 bits; a narrower accumulator would wrap with this one."""
-    render.check_fits(model)
-    monkeypatch.setattr(render, "ACCUMULATOR_MAX", 2**15 - 1)
-    with pytest.raises(BuildError, match="layer 1 could add up to"):
-        render.check_fits(model)
-
-
-@pytest.mark.parametrize(
-    ("size", "words"),
-    [
-        (Dimensions(52, 40, 40), "52 channels"),
-        (Dimensions(21, 128, 40), "128"),
-        (Dimensions(21, 40, 300), "300"),
-    ],
-)
-def test_a_model_too_wide_for_the_firmware_is_refused(size: Dimensions, words: str) -> None:
-    with pytest.raises(BuildError, match=words):
-        render.check_fits(random_network(size, 9))
-
-
-def test_a_weight_of_minus_128_is_refused() -> None:
-    model = random_network(SIZE, 9)
-    model.integer["w2"][3, 3] = -128
-    with pytest.raises(BuildError, match="w2 has a weight of -128"):
-        render.check_fits(model)
-
-
-def test_the_widest_model_of_the_largest_weights_fits() -> None:
-    size = Dimensions(51, 120, 127)
-    model = random_network(size, 127)
-    for name, array in model.integer.items():
-        array.fill(127 if name.startswith("w") else -32768)
-    render.check_fits(model)
-    assert cost.flash_bytes(size, 1) == 15 * (17 + 8 * 255) + 16 * (17 + 8 * 120) + 7 * (17 + 8 * 127) + 5
 
 
 def test_without_a_project_it_says_how_to_make_one(

@@ -2,7 +2,6 @@
 
 import json
 import os
-import shlex
 import shutil
 import signal
 import subprocess
@@ -17,14 +16,12 @@ import pytest
 from support.bootloader_stand_in import ATMEGA_328P, StandIn
 from support.intel_hex import image
 from tilenca.base import paths
-from tilenca.base.errors import TilencaError
 from tilenca.cli import main
 from tilenca.fleet import programmer
-from tilenca.fleet.avrdude import Output, Progress, find_avrdude
-from tilenca.fleet.flash_state import failed_boards, remember
+from tilenca.fleet.avrdude import find_avrdude
+from tilenca.fleet.flash_state import failed_boards
 from tilenca.fleet.lock import port_lock
 from tilenca.fleet.tiles_file import Place, write_tiles
-from tilenca.views.flash import ending
 
 DATA = bytes(index * 7 & 0xFF for index in range(6000))
 LIMIT_S = 60
@@ -181,43 +178,6 @@ def test_a_tile_that_is_wanted_and_missing_is_a_row_and_remembered(
     assert failed_boards() == {gone}
 
 
-def test_where_there_is_no_room_what_failed_before_is_still_known(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
-    remember({"port:1": False})
-    program = (
-        "import resource; from tilenca.fleet.flash_state import remember; "
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); remember({'port:2': False})"
-    )
-    subprocess.run([sys.executable, "-c", program], timeout=LIMIT_S, check=True)
-    assert failed_boards() == {"port:1"}
-
-
-def test_calls_that_end_at_the_same_moment_forget_nothing(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
-    names = [f"port:{number}" for number in range(40)]
-    threads = [threading.Thread(target=remember, args=({name: False},)) for name in names]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert failed_boards() == set(names)
-    (tmp_path / "tilenca" / "failed.json").write_bytes(b"\xff")
-    remember({"port:1": False, "port:2": True})
-    assert failed_boards() == {"port:1"}
-
-
-def test_on_a_narrow_terminal_boards_are_told_apart_by_the_end_of_their_names() -> None:
-    titles = [f"/tmp/a-long-folder-name-of-a-port/tile-{number} tile {number}" for number in (1, 2)]
-    shown = [ending(title, 20) for title in titles]
-    assert [line[-14:] for line in shown] == ["/tile-1 tile 1", "/tile-2 tile 2"]
-    assert {len(line) for line in shown} == {20}
-    assert ending("ttyACM3", 0) == "ttyACM3"
-
-
 def test_all_well_exits_with_0_with_fewer_jobs_than_boards(firmware: Path) -> None:
     with StandIn() as first, StandIn() as second, StandIn() as third:
         boards = (first, second, third)
@@ -348,109 +308,6 @@ def test_nobody_listening_to_the_chatter_stops_no_work(firmware: Path) -> None:
     os.close(chatter)
     assert done.returncode == 0
     assert [tile["result"] for tile in json.loads(done.stdout)["tiles"]] == ["flashed"]
-
-
-def test_an_interrupted_build_leaves_nothing_running(tmp_path: Path) -> None:
-    """The "pio" here starts a compiler of its own, as the real one does, and says both their numbers."""
-    told = tmp_path / "told"
-    os.mkfifo(told)
-    program = f"sleep 600 & echo $$ $! > {shlex.quote(str(told))}; wait"
-    (tmp_path / "pio").write_text(f"#!/bin/sh\n{program}\n")
-    (tmp_path / "pio").chmod(0o755)
-    # `pio` is looked for beside the interpreter.
-    script = "import sys; sys.executable = sys.argv.pop(1); from tilenca.cli import main; sys.exit(main())"
-    with StandIn() as board:
-        interpreter = str(tmp_path / "python")
-        words = [sys.executable, "-c", script, interpreter, "flash", "--port", board.port]
-        flashing = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
-        started = [Path("/proc") / number for number in told.read_text().split()]
-        assert all(process.exists() for process in started)
-        flashing.send_signal(signal.SIGTERM)
-        _, chatter = flashing.communicate(timeout=LIMIT_S)
-    assert flashing.returncode == 130, chatter
-    assert [_runs(process) for process in started] == [False, False]
-
-
-def _runs(process: Path) -> bool:
-    """Whether a process runs; one that has ended may wait for its parent to notice (state Z)."""
-    try:
-        return (process / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def test_a_failed_build_shows_its_output_and_exits_with_4(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(paths, "PROJECT", tmp_path)  # no project there
-    with StandIn() as board:
-        assert main(["flash", "--port", board.port]) == 4
-        assert not board.heard.is_set()
-    captured = capfd.readouterr()
-    assert captured.out == ""
-    assert "platformio.ini" in captured.err
-    assert captured.err.splitlines()[-1].startswith("tilenca: `")
-
-
-def test_avrdude_is_found_where_platformio_put_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", "/nowhere")
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setattr(paths, "BUILD", tmp_path / "build")
-    monkeypatch.delenv("PLATFORMIO_CORE_DIR", raising=False)
-    with pytest.raises(TilencaError, match="avrdude is not installed"):
-        find_avrdude()
-    package = tmp_path / ".platformio" / "packages" / "tool-avrdude"
-    package.mkdir(parents=True)
-    for name in ("avrdude", "avrdude.conf"):
-        (package / name).touch(mode=0o755)
-    found = find_avrdude()
-    assert found.command("/dev/ttyACM0", Path("f.hex"))[:3] == [
-        str(package / "avrdude"),
-        "-C",
-        f"{package}/avrdude.conf",
-    ]
-
-
-# As avrdude prints it; byte by byte, for a pipe may cut anywhere.
-BARS = [
-    (b"\nReading | ", Progress("connecting", 0.0)),
-    (b"#" * 50 + b" | 100% 0.00s\n\navrdude: device signature = 0x1e9801\n", Progress("connecting", 0.0)),
-    (b"\nWriting | ", Progress("writing", 0.0)),
-    (b"#" * 25, Progress("writing", 0.5)),
-    (b"#" * 25 + b" | 100% 1.00s\n", Progress("writing", 1.0)),
-    (b"\nReading | ##########", Progress("verifying", 0.2)),
-]
-
-
-def test_progress_is_read_from_bars_however_they_are_cut() -> None:
-    output = Output()
-    for text, expected in BARS:
-        for byte in text:
-            output.feed(bytes([byte]))
-        assert output.progress == expected
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ('avrdude: ser_open(): can\'t open device "/dev/null": Permission denied\n', "permission denied"),
-        ("avrdude OS error: cannot open port /dev/null: No such file or directory\n", "no such port"),
-        (
-            "avrdude OS error: cannot open port /dev/null: Device or resource busy\n",
-            "busy: ",
-        ),
-        ("avrdude OS error: cannot open port /dev/null: Odd\nmore: words\n", "cannot be opened: Odd; is it"),
-        ("avrdude OS error: cannot open port \n", "cannot be opened: "),
-        ("avrdude: verification error, first mismatch at byte 0x0021\n", "verification failed at 0x0021"),
-        ("avrdude: stk500v2_ReceiveMessage(): timeout\n", "no reply"),
-        ("avrdude error: something new\nbye\n", "avrdude failed: error: something new"),
-        ("", "avrdude failed: no message"),
-    ],
-)
-def test_avrdudes_words_become_a_reason(text: str, reason: str) -> None:
-    output = Output()
-    output.feed(text.encode())
-    assert output.reason("/dev/null").startswith(reason)
 
 
 def test_the_stand_in_ends_with_its_block() -> None:

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import termios
-import tty
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -17,65 +16,19 @@ from typing import IO, Any, Self
 
 import pytest
 
+from support.tile_port import STATE, Tile
 from tilenca.cli import main
 from tilenca.fleet.reader import PortReader
 from tilenca.fleet.recording import format_event
-from tilenca.fleet.state import Event, PortNews, TileView
-from tilenca.protocol.describe import printable
+from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
-    AckSentence,
-    ErrorSentence,
-    HelloSentence,
     LinkSentence,
-    NakSentence,
-    OtherVersionSentence,
-    Sentence,
     TileSentence,
-    TimeSentence,
     format_sentence,
 )
-from tilenca.views.fleet_table import cells, log_line
 
 LIMIT_S = 60
-STATE = bytes([128]) * 21
-
-
-class Tile:
-    """A tile's USB serial as a pseudo-terminal; use it as a context manager."""
-
-    def __init__(self, tile: int) -> None:
-        self.tile = tile
-        self.updates = 0
-
-    def __enter__(self) -> Self:
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        self.port = os.ttyname(self._slave)
-        return self
-
-    def __exit__(self, *about: object) -> None:
-        self.unplug()
-
-    def unplug(self) -> None:
-        """The port vanishes."""
-        if self._master >= 0:
-            os.close(self._master)
-            os.close(self._slave)
-            self._master = -1
-
-    def write(self, data: bytes) -> None:
-        os.write(self._master, data)
-
-    def say(self, label: str = "4") -> None:
-        self.updates += 1
-        self.write(
-            format_sentence(
-                TileSentence(
-                    self.tile, 100 * self.updates, self.updates, label, int(label), 30, "N-SW", STATE
-                )
-            )
-        )
 
 
 @pytest.fixture
@@ -354,34 +307,6 @@ def test_two_monitors_do_not_share_a_port(tiles: list[Tile], capfd: pytest.Captu
     assert f"busy: tilenca monitor (pid {os.getpid()})" in capfd.readouterr().out
 
 
-def test_leaving_a_port_does_not_lower_dtr(tiles: list[Tile]) -> None:
-    with PortReader([tiles[0].port]) as reader:
-        reader.poll(0.0)
-        flags = termios.tcgetattr(tiles[0]._slave)[2]
-    assert not flags & termios.HUPCL
-
-
-def test_a_hundred_bursts_from_many_ports_lose_nothing(tiles: list[Tile]) -> None:
-    with PortReader([tile.port for tile in tiles]) as reader:
-        assert len(reader.poll(0.0)) == 3
-        heard: list[Event] = []
-        for _ in range(100):
-            for tile in tiles:
-                tile.say()
-            heard += reader.poll(0.0)
-        for _ in range(1000):
-            if len(heard) == 300:
-                break
-            heard += reader.poll(1.0)
-    for tile in tiles:
-        mine = [event for event in heard if event.port == tile.port]
-        assert [
-            event.sentence.updates
-            for event in mine
-            if isinstance(event, Heard) and isinstance(event.sentence, TileSentence)
-        ] == list(range(1, 101))
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -433,56 +358,3 @@ def test_patterns_may_match_later_and_names_may_not(tiles: list[Tile], tmp_path:
         wait_open(monitor, monitor.process.stdout, 1)
         monitor.interrupt()
     assert main(["monitor", "--port", f"{tmp_path}/other"]) == 3
-
-
-def test_bytes_cannot_disturb_the_terminal() -> None:
-    assert printable(b"\x1b[2J\xff\n" + b"x" * 100).isprintable()
-
-
-def test_a_log_line_names_time_port_and_tile() -> None:
-    sentences: dict[str, Sentence] = {
-        "tile 7 TILE shows nothing update 0 up 0.5 s links ----": TileSentence(
-            7, 500, 0, "", None, None, "----", STATE
-        ),
-        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 overruns 6 age never": LinkSentence(
-            7, 0, "W", 1, 2, 3, 4, 5, None, 6, None, None
-        ),
-        "tile 7 LINK W sent 1 received 2 corrupt 3 lost 4 foreign 5 overruns 6 age 12 ms from tile 9 E": (
-            LinkSentence(7, 0, "W", 1, 2, 3, 4, 5, 12, 6, 9, "E")
-        ),
-        "tile 7 HELLO protocol 3 firmware 00C0FFEE model 00AB (21 channels, 10 classes) every 250 ms "
-        "for ever brightness 128 reset by power-on and watchdog": (
-            HelloSentence(3, 7, 0xAB, 21, 10, 250, 0, 9, 0xC0FFEE, 128)
-        ),
-        "tile 7 TIME computes 14200 us awake 16.3 % longest turn 2048 us stack 5000 bytes unused "
-        "3 sentences dropped": TimeSentence(7, 0, 14200, 163, 2048, 5000, 3),
-        "tile 7 ERROR SETTINGS defaults in force": ErrorSentence(7, 0, "SETTINGS", "defaults in force"),
-        "tile 7 ACK SET period 20": AckSentence(7, "SET", ("period", "20")),
-        "tile 7 NAK SET: wrong field": NakSentence(7, "VALUE", "SET"),
-        "tile 7 NAK sentence: damaged": NakSentence(7, "CHECKSUM"),
-        "tile 7 OTHER speaks protocol 1, these tools speak 3: flash it with the firmware that belongs to "
-        "them (tilenca flash)": OtherVersionSentence(1, 7),
-    }
-    for expected, sentence in sentences.items():
-        line = log_line(Heard(0.0, "/dev/ttyACM0", b"", sentence))
-        assert line.endswith(f":00.000 /dev/ttyACM0 {expected}")
-
-
-def test_a_tile_that_fell_silent_is_marked() -> None:
-    view = TileView("p")
-    view.take(PortNews(0.0, "p", is_open=True))
-    view.take(Heard(10.0, "p", b"", HelloSentence(3, 7, 0, 21, 10, 10000, 0, 0, 0, 255)))
-    assert cells(view, 25.0)[-1] == ""
-    assert cells(view, 31.0)[-1] == "silent"
-    view.take(PortNews(32.0, "p", is_open=False, reason="went away"))
-    assert cells(view, 33.0)[-1] == "went away"
-
-
-def test_a_tile_of_another_protocol_version_is_marked() -> None:
-    view = TileView("p")
-    view.take(PortNews(0.0, "p", is_open=True))
-    view.take(Heard(1.0, "p", b"", OtherVersionSentence(1, 7)))
-    assert cells(view, 1.0)[-1] == "speaks protocol 1: flash it"
-    view.take(Heard(2.0, "p", b"", HelloSentence(3, 7, 0, 21, 10, 100, 0, 0, 0, 255)))
-    view.take(Heard(3.0, "p", b"", ErrorSentence(7, 0, "STACK", "")))
-    assert cells(view, 3.0)[-1] == "STACK"

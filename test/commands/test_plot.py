@@ -1,7 +1,6 @@
 """Pictures of a training and of tiles at work: what is drawn, the same every time, and what is refused."""
 
 import json
-import math
 import shutil
 import subprocess
 import sys
@@ -10,21 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
+from support.films import film_of
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.cli import main
 from tilenca.commands.plot import read_history
 from tilenca.model.file import load_model
-from tilenca.shapes.batch import load_drawings
-from tilenca.shapes.glyphs import GLYPHS, screen_colour
-from tilenca.simulator.trace import NOTHING, Film, record
+from tilenca.shapes.glyphs import look_of, screen_colour
 from tilenca.views import film as pictures
 from tilenca.views import plots
-
-ROWS = [(50 * n, 1 / n, 1 - 1 / n) for n in range(1, 101)]
 
 
 def plot(*arguments: object) -> int:
@@ -32,83 +27,6 @@ def plot(*arguments: object) -> int:
         return main(["plot", *map(str, arguments)])
     except SystemExit as ended:
         return int(ended.code or 0)
-
-
-def film_of(name: str, steps: int = 12, seed: int = 1) -> Film:
-    model = load_model(paths.DEFAULT_MODEL)
-    drawings = load_drawings([paths.DEFAULT_SHAPES], labels=model.labels)
-    number = [shape.name for shape in drawings.shapes].index(name)
-    return record(model, drawings, number, steps, "clock", seed)
-
-
-@pytest.fixture
-def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
-    """The figures that would have been saved."""
-    drawn: list[Figure] = []
-    monkeypatch.setattr(plots, "save", lambda figure, path: drawn.append(figure))
-    return drawn
-
-
-def test_a_film_begins_dark_and_ends_as_the_shape() -> None:
-    film = film_of("4")
-    assert film.shown.shape == (13, 10)
-    assert (film.shown[0] == NOTHING).all()
-    assert (film.shown[-1] == 4).all()
-    assert film.agreed_at is not None
-    assert not film.right[film.agreed_at - 1]
-    assert film.right[film.agreed_at :].all()
-
-
-def test_a_film_that_does_not_end_right_has_not_agreed() -> None:
-    shape = film_of("1", steps=1).shape
-    film = Film(shape, ("0", "1"), np.array([[1] * 5, [1, 1, 0, 1, 1]]), "")
-    assert film.agreed_at is None
-    assert list(film.right) == [True, False]
-
-
-def test_the_same_seed_gives_the_same_film_and_another_seed_another() -> None:
-    np.testing.assert_array_equal(film_of("8").shown, film_of("8").shown)
-    assert (film_of("8").shown != film_of("8", seed=2).shown).any()
-
-
-@pytest.mark.parametrize("steps", [1, 19, 23, 24, 60, 500])
-def test_a_strip_shows_the_first_and_the_last_step_and_no_more_than_fit(steps: int) -> None:
-    shown = list(pictures.panels_of(steps))
-    assert shown[0] == 0
-    assert shown[-1] == steps
-    assert len(shown) <= pictures.MAX_PANELS
-    assert shown == sorted(set(shown))
-    if steps < pictures.MAX_PANELS:
-        assert len(shown) == steps + 1
-
-
-def test_a_tile_has_the_colour_and_the_segments_of_what_it_shows() -> None:
-    film = film_of("1", steps=1)
-    shown = np.array([[NOTHING, 2, 8, 4, 7]])
-    axes = Figure().add_axes((0, 0, 1, 1))
-    pictures.draw_tiles(axes, Film(film.shape, film.labels, shown, ""), 0)
-    fills = [patch.get_facecolor()[:3] for patch in axes.patches]
-    assert fills[1:] == [pytest.approx(screen_colour(number)) for number in (2, 8, 4, 7)]
-    assert len(set(fills)) == 5
-    segments = sum(len(collection.get_paths()) for collection in axes.collections)
-    assert segments == sum(GLYPHS[label].bit_count() for label in "2847")
-
-
-def test_segments_of_a_digit_do_not_overlap_and_stay_in_their_tile() -> None:
-    from matplotlib.path import Path as Outline
-
-    outlines = [Outline(pictures.segment(name)) for name in "abcdefg"]
-    for number, outline in enumerate(outlines):
-        corners = np.asarray(outline.vertices, np.float64)
-        assert corners.min() > 0.1
-        assert corners.max() < 0.9
-        assert not any(outline.intersects_path(other) for other in outlines[:number])
-
-
-def test_thirty_classes_have_thirty_colours_on_a_screen() -> None:
-    colours = [screen_colour(number) for number in range(30)]
-    assert len(set(colours)) == 30
-    assert all(0 <= part <= 1 for colour in colours for part in colour)
 
 
 def test_a_strip_is_a_png_of_some_width(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,7 +53,7 @@ def test_a_strip_is_a_png_of_some_width(tmp_path: Path, capsys: pytest.CaptureFi
 def test_a_gif_has_one_frame_per_step_and_shows_the_runs_colours(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     assert plot("--shape", 4, "--film", path, "--steps", 12, "--schedule", "clock") == 0
-    wanted = np.array(screen_colour(4)) * 255
+    wanted = np.array(screen_colour(look_of("4", 4).colour)) * 255
     with Image.open(path) as image:
         assert (image.format, getattr(image, "n_frames", 0)) == ("GIF", 13)
         shares = []
@@ -177,49 +95,6 @@ def test_a_history_is_drawn_beside_its_model(tmp_path: Path) -> None:
     shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model")
     assert plot("--model", tmp_path / "model") == 0
     assert (tmp_path / "model" / "history.png").exists()
-
-
-def test_all_validation_columns_are_drawn_where_they_were_measured(figures: list[Figure]) -> None:
-    columns = (*plots.HISTORY, "@60", "seconds", "@1000")
-    rows = [(*row, 0.5 if n % 20 == 0 else None, 3.0, 0.25) for n, row in enumerate(ROWS)]
-    plots.plot_history(rows, Path("unused.png"), columns)
-    upper, lower = figures[0].axes
-    assert upper.get_yscale() == "log"
-    legend = lower.get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "training samples",
-        "measured after 60 steps",
-        "measured after 1000 steps",
-    ]
-    lines = {line.get_label(): line for line in lower.get_lines()}
-    measured = lines["measured after 60 steps"]
-    assert list(np.asarray(measured.get_xdata())) == [50, 1050, 2050, 3050, 4050]
-    assert set(np.asarray(measured.get_ydata())) == {0.5}
-
-
-def test_the_mean_line_begins_and_ends_near_its_points(figures: list[Figure]) -> None:
-    plots.plot_history([(n, 100.0 - n, n / 100) for n in range(1, 100)], Path("unused.png"))
-    raw, mean = figures[0].axes[0].get_lines()
-    assert list(np.asarray(raw.get_ydata())) == [100.0 - n for n in range(1, 100)]
-    np.testing.assert_allclose(np.asarray(mean.get_ydata()), np.asarray(raw.get_ydata()), atol=2)
-
-
-@pytest.mark.parametrize("rows", [ROWS[:1], [(1, 0.0, 0.0), (2, 0.0, 1.0)], [(1, math.nan, 0.5)]])
-def test_short_histories_and_losses_of_nothing(rows: list[tuple[float, ...]], tmp_path: Path) -> None:
-    plots.plot_history(rows, tmp_path / "h.png")
-    with Image.open(tmp_path / "h.png") as image:
-        image.load()
-
-
-def test_histories_that_cannot_be_drawn(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="no rows"):
-        plots.plot_history([], tmp_path / "h.png")
-    with pytest.raises(UsageError, match="no column 'loss'"):
-        plots.plot_history([(1, 2)], tmp_path / "h.png", ("iteration", "agreement"))
-    with pytest.raises(UsageError, match=r"written as \.png or \.svg"):
-        plots.plot_history(ROWS, tmp_path / "h.bmp")
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from support.alone import alone
 from support.line_faults import Plug
 from tilenca.base.paths import ROOT
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
@@ -25,7 +26,8 @@ PASS = "pass, a tile that hears this one, from its side "
 def elf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The image of the environment `board_test`, built as users build it."""
     pio = str(Path(sys.executable).with_name("pio"))
-    subprocess.run([pio, "run", "-s", "-d", str(ROOT), "-e", "board_test"], check=True)
+    with alone("pio"):
+        subprocess.run([pio, "run", "-s", "-d", str(ROOT), "-e", "board_test"], check=True)
     return ROOT / ".pio" / "build" / "board_test" / "firmware.elf"
 
 

@@ -139,7 +139,9 @@ def test_the_shipped_model_on_the_chip_is_numpy(tmp_path: Path) -> None:
 
 
 def test_the_kernel_needs_33_bytes_of_stack(tmp_path: Path) -> None:
-    elf = kernel_program.program(random_network(Dimensions(), 1, 1), DRIVER, tmp_path, "-DVECTORS=1")
+    elf = kernel_program.program(
+        random_network(Dimensions(21, 40, 40), 1, 1), DRIVER, tmp_path, "-DVECTORS=1"
+    )
     listing = parse(disassemble(elf))
     found = stack.StackAnalysis(listing).depth(listing.functions["tilenca_blocks"])
     assert found + stack.RETURN_ADDRESS == 33

@@ -7,16 +7,19 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
+import threading
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Self
 
 import pytest
 
 from support.avr import Compile, run_tool
+from support.owned_clock import OwnedClock
 from tilenca.emulator.serve import STOCK_BOOTLOADER
 
 TIMEOUT_S = 60.0
+FLOW_S = 0.005
 
 ECHO = """
 int main(void) {
@@ -28,14 +31,21 @@ int main(void) {
 
 
 class Server:
-    def __init__(self, elf: Path, directory: Path, *options: str, stderr: int = subprocess.PIPE) -> None:
+    def __init__(
+        self,
+        elf: Path,
+        directory: Path,
+        *options: str,
+        stderr: int = subprocess.PIPE,
+        environment: Mapping[str, str] = os.environ,
+    ) -> None:
         shapes = directory.parent / "pair.toml"
         shapes.write_text('[[shape]]\nlabel = "1"\ngrid = "##"\n')
         command = [sys.executable, "-m", "tilenca.cli", "emulate", "--shapes", shapes, "--elf", elf]
         self.process = subprocess.Popen(
             [*map(str, command), "--boot-spread", "0", "--serve", str(directory), *options],
             stderr=stderr,
-            env=os.environ | {"TERM": "xterm"},
+            env={**environment, "TERM": "xterm"},
             text=True,
         )
         if stderr != subprocess.PIPE:
@@ -131,37 +141,67 @@ def test_serving_needs_a_directory_of_its_own() -> None:
     assert "--serve needs a directory of its own" in done.stderr
 
 
-def hold_up(server: Server, directory: Path) -> None:
-    """To its tiles it is as if the machine were busy with something else for two seconds."""
-    port = os.open(directory / "tile-01", os.O_RDWR | os.O_NOCTTY)
-    assert read(port, 6) == b"hello "  # so it runs
-    os.close(port)
-    server.process.send_signal(signal.SIGSTOP)
-    time.sleep(2.0)
-    server.process.send_signal(signal.SIGCONT)
+class Flow:
+    """Lets a server's clock flow while the block runs, and leap where the test wants it."""
+
+    def __init__(self, clock: OwnedClock) -> None:
+        self._clock = clock
+        self._leap_s = 0.0
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *about: object) -> None:
+        self._ended.set()
+        self._thread.join(TIMEOUT_S)
+
+    def leap(self, seconds: float) -> None:
+        """To the server it is as if the machine were busy with something else for so long."""
+        self._leap_s = seconds
+
+    def _run(self) -> None:
+        while not self._ended.wait(FLOW_S):
+            leap_s, self._leap_s = self._leap_s, 0.0
+            self._clock.seconds += FLOW_S + leap_s
 
 
-def test_tiles_that_fall_behind_real_time_say_how_far(echo: Server, directory: Path) -> None:
-    hold_up(echo, directory)
-    port = os.open(directory / "tile-02", os.O_RDWR | os.O_NOCTTY)
+def greeted(directory: Path, name: str) -> None:
+    """Opens a tile's port and waits for its greeting: by then it runs."""
+    port = os.open(directory / name, os.O_RDWR | os.O_NOCTTY)
     assert read(port, 6) == b"hello "
     os.close(port)
-    assert echo.stop() == 130
-    assert echo.process.stderr is not None
-    behind = re.search(r"the tiles are ([\d.]+) s behind real time: they lived", echo.process.stderr.read())
+
+
+def test_tiles_that_fall_behind_real_time_say_how_far(avr: Compile, directory: Path, tmp_path: Path) -> None:
+    clock = OwnedClock(tmp_path / "clock")
+    server = Server(avr(ECHO, '-DGREETING="hello "'), directory, environment=clock.environment)
+    with Flow(clock) as flow:
+        greeted(directory, "tile-01")
+        flow.leap(2.0)
+        greeted(directory, "tile-02")
+        assert server.stop() == 130
+    assert server.process.stderr is not None
+    behind = re.search(r"the tiles are ([\d.]+) s behind real time: they lived", server.process.stderr.read())
     assert behind is not None
     assert float(behind[1]) > 1.5
 
 
-def test_a_terminal_is_told_of_the_lag_while_it_lasts(avr: Compile, directory: Path) -> None:
+def test_a_terminal_is_told_of_the_lag_while_it_lasts(avr: Compile, directory: Path, tmp_path: Path) -> None:
+    clock = OwnedClock(tmp_path / "clock")
     master, slave = os.openpty()
-    server = Server(avr(ECHO, '-DGREETING="hello "'), directory, stderr=slave)
+    elf = avr(ECHO, '-DGREETING="hello "')
+    server = Server(elf, directory, stderr=slave, environment=clock.environment)
     os.close(slave)
     read_until(master, b"serving 2 tiles")
-    hold_up(server, directory)
-    read_until(master, b"behind real time")
-    assert server.process.poll() is None
-    server.stop()
+    with Flow(clock) as flow:
+        greeted(directory, "tile-01")
+        flow.leap(2.0)
+        read_until(master, b"behind real time")
+        assert server.process.poll() is None
+        server.stop()
     os.close(master)
 
 

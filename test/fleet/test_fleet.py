@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from support.alone import alone
 from support.intel_hex import image
 from support.lab import Lab
 from tilenca.base import paths
@@ -216,14 +217,15 @@ def test_the_monitor_draws_the_lab_and_survives_unplug_and_replug(lab: Lab) -> N
 def test_platformio_uploads_to_one_tile_and_monitors_it(lab: Lab) -> None:
     pio = Path(sys.executable).with_name("pio")
     port = lab.port(9)
-    uploaded = subprocess.run(
-        [pio, "run", "-e", paths.FIRMWARE_ENV, "-t", "upload", "--upload-port", port],
-        cwd=paths.ROOT,
-        capture_output=True,
-        text=True,
-        timeout=LIMIT_S,
-        check=False,
-    )
+    with alone("pio"):
+        uploaded = subprocess.run(
+            [pio, "run", "-e", paths.FIRMWARE_ENV, "-t", "upload", "--upload-port", port],
+            cwd=paths.ROOT,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT_S,
+            check=False,
+        )
     assert uploaded.returncode == 0, uploaded.stderr
     assert "bytes of flash verified" in uploaded.stderr
     keyboard, inside = pty.openpty()

@@ -7,22 +7,17 @@ from contextlib import ExitStack
 import pytest
 
 from support.scripted_port import HELLO, Device
-from tilenca.fleet.command import ATTEMPTS, Reply, command_all
-from tilenca.fleet.identify import SILENT, STALE_S, ask_all
+from tilenca.fleet.identify import SILENT, ask_all
 from tilenca.fleet.lock import port_lock
-from tilenca.fleet.reader import PortReader
 from tilenca.protocol.board_test import BOARD_TEST
-from tilenca.protocol.commands import ask_command, set_command
+from tilenca.protocol.commands import ask_command
 from tilenca.protocol.sentences import (
-    AckSentence,
-    NakSentence,
     TileSentence,
     format_sentence,
     framed,
 )
 
 STATE = format_sentence(TileSentence(7, 100, 1, "4", 4, 30, "----", bytes([128] * 21)))
-ORDER = set_command("period", 20)
 
 
 @pytest.fixture
@@ -49,43 +44,26 @@ def test_each_port_has_its_answer_or_a_reason_in_the_order_asked(stack: ExitStac
 
 
 def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack) -> None:
-    asked = stack.enter_context(Device(STATE, lambda line, count: format_sentence(HELLO)))
+    said_when_asked: list[int] = []
+
+    def answer(line: bytes, count: int) -> bytes:
+        said_when_asked.append(asked.said)
+        return format_sentence(HELLO)
+
+    asked = stack.enter_context(Device(STATE, answer))
     began_s = time.monotonic()
-    answers = ask_all([asked.port], "a test")
+
+    def clock() -> float:
+        """Stands still until the tile has spoken three times."""
+        return time.monotonic() - began_s if asked.said >= 3 else 0.0
+
+    answers = ask_all([asked.port], "a test", clock=clock)
     assert answers[asked.port].hello == HELLO
     assert asked.heard[0] == ask_command()
-    assert time.monotonic() - began_s >= STALE_S, "what was said before a reset proves nothing"
+    assert said_when_asked[0] >= 3, "what was said before a reset proves nothing"
 
 
 def test_a_board_under_test_is_told_from_one_that_is_silent(stack: ExitStack) -> None:
     tested = stack.enter_context(Device(b"display: only segment a PH4\r\n"))
     assert ask_all([tested.port], "a test")[tested.port].problem == BOARD_TEST
     assert not tested.heard, "letters are commands to it"
-
-
-def ack(line: bytes, count: int) -> bytes:
-    return STATE + format_sentence(AckSentence(7, "SET", ("period", "20")))
-
-
-def refuse(line: bytes, count: int) -> bytes:
-    return format_sentence(NakSentence(7, "EEPROM", "SET"))
-
-
-def damaged_at_first(line: bytes, count: int) -> bytes:
-    return format_sentence(NakSentence(7, "CHECKSUM")) if count == 1 else ack(line, count)
-
-
-def test_a_command_is_acknowledged_refused_or_said_again(stack: ExitStack) -> None:
-    devices = [stack.enter_context(Device(answer=answer)) for answer in (ack, refuse, damaged_at_first)]
-    deaf = stack.enter_context(Device())
-    orders = {device.port: ORDER for device in (*devices, deaf)}
-    with PortReader(list(orders), user="a test") as reader:
-        while len(reader.open) < len(orders):
-            reader.poll(0.1)
-        replies = command_all(reader, orders, "SET")
-    assert list(replies) == list(orders)
-    assert replies[devices[0].port] == replies[devices[2].port] == Reply(("period", "20"))
-    assert replies[devices[1].port].problem == "refused: SET: the EEPROM did not keep it"
-    assert replies[deaf.port].problem == f"no answer to {ATTEMPTS} commands"
-    assert [len(device.heard) for device in (*devices, deaf)] == [1, 1, 2, ATTEMPTS]
-    assert {line for device in devices for line in device.heard} == {ORDER}

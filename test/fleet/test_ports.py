@@ -9,9 +9,10 @@ import pytest
 from serial.tools import list_ports_linux
 from serial.tools.list_ports_common import ListPortInfo
 
-from tilenca.base.errors import TilencaError
+from tilenca.base.errors import NoDeviceError, TilencaError
 from tilenca.fleet import ports
 from tilenca.fleet.boards import find_boards
+from tilenca.fleet.ports import find_ports, megas, natural_key
 
 CDC, USB_SERIAL = "usb", "usb-serial"
 
@@ -98,13 +99,11 @@ def test_udevs_links_lead_to_the_board(computer: Computer, monkeypatch: pytest.M
     for link in (by_id, by_path):
         link.symlink_to("/dev/ttyACM0")
     monkeypatch.setattr(ports, "is_device", os.path.lexists)  # there is no such device here
-    [board] = find_boards([str(by_id), str(by_path)], None).boards
-    assert (board.port.name, board.name, board.port.location) == (
-        str(by_path),
-        "serial:955",
-        "1-2.3:1.0",
-    ) or (board.port.name == str(by_id))
-    assert board.port.vid == 0x2341
+    for named in ([by_id, by_path], [by_path, by_id], [by_path]):
+        [board] = find_boards([str(link) for link in named], None).boards
+        assert board.port.name == str(named[0]), "of two names of one port the first counts"
+        assert (board.name, board.port.location) == ("serial:955", "1-2.3:1.0")
+        assert board.port.vid == 0x2341
 
 
 def test_a_board_that_is_pulled_while_it_is_looked_at_stops_nobody(
@@ -127,3 +126,56 @@ def test_a_board_that_is_pulled_while_it_is_looked_at_stops_nobody(
         ports.find_ports()
     monkeypatch.setattr(ports, "comports", looked_at_too_early)
     assert [board.name for board in find_boards([], None).boards] == ["serial:955"]
+
+
+def usb(device: str, vid: int | None, pid: int | None, serial_number: str | None = None) -> ListPortInfo:
+    info = ListPortInfo(device)
+    info.vid, info.pid, info.serial_number = vid, pid, serial_number
+    return info
+
+
+def test_megas_are_known_by_their_usb_ids_and_come_in_natural_order() -> None:
+    infos = [
+        usb("/dev/ttyACM10", 0x2341, 0x0042, "855"),
+        usb("/dev/ttyACM2", 0x2A03, 0x0010),
+        usb("/dev/ttyUSB0", 0x1A86, 0x7523),
+        usb("/dev/ttyS0", None, None),
+        usb("/dev/ttyACM1", 0x2341, 0x0043),  # an Uno
+    ]
+    found = megas(infos)
+    assert [port.name for port in found] == ["/dev/ttyACM2", "/dev/ttyACM10", "/dev/ttyUSB0"]
+    assert [port.about for port in found] == [
+        "Arduino.org Mega 2560",
+        "Arduino Mega 2560 R3",
+        "CH340 adapter, maybe a Mega 2560",
+    ]
+    assert found[1].serial_number == "855"
+
+
+def test_natural_order_compares_numbers_as_numbers() -> None:
+    assert sorted(["tile10", "tile9", "tile", "10", "9"], key=natural_key) == [
+        "9",
+        "10",
+        "tile",
+        "tile9",
+        "tile10",
+    ]
+
+
+def test_one_board_is_one_device_whatever_its_names(pty: str, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).symlink_to(pty)
+    [port] = find_ports([f"{tmp_path}/*", pty])
+    assert port.name == f"{tmp_path}/a"
+
+
+def test_a_plain_file_is_no_port(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(NoDeviceError):
+        find_ports([str(tmp_path / "file")])
+
+
+@pytest.mark.parametrize("name", ["/dev/null", "/dev/zero"])
+def test_a_device_with_nothing_behind_it_is_no_port(name: str) -> None:
+    with pytest.raises(NoDeviceError):
+        find_ports([name])

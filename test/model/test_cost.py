@@ -1,6 +1,5 @@
 """Whether a network fits, said before it is trained."""
 
-import json
 import subprocess
 from itertools import pairwise
 from pathlib import Path
@@ -12,19 +11,12 @@ from firmware.disassembly import disassemble, parse
 from firmware.elf import Firmware
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
-from tilenca.cli import main
 from tilenca.model import cost, packing, render
 from tilenca.model.file import Dimensions, load_model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 
 WIDEST = Dimensions(51, 127, 127)  # of the buffers; a first layer that wide is refused
 WIDE = Dimensions(51, 120, 127)
-
-
-def plan(*arguments: str) -> int:
-    try:
-        return main(["export", "--plan", *arguments])
-    except SystemExit as ended:
-        return int(ended.code or 0)
 
 
 def test_flash_is_what_the_exported_arrays_take() -> None:
@@ -115,6 +107,10 @@ def test_the_period_is_that_of_platformio_ini(tmp_path: Path, monkeypatch: pytes
     assert cost.firmware_period_ms() == 77
 
 
+def test_the_default_period_is_the_one_that_platformio_ini_builds() -> None:
+    assert cost.firmware_period_ms() == DEFAULT_PERIOD_MS
+
+
 def test_a_check_is_one_line_for_people() -> None:
     line = str(cost.check(Dimensions(37, 40, 40), 26))
     assert line.startswith("fits a tile: 10,985 bytes of flash")
@@ -139,58 +135,3 @@ def test_a_layer_larger_than_the_compiler_takes_is_refused() -> None:
     cost.check(WIDE, 26)
     with pytest.raises(BuildError, match="a layer of 32912 bytes, the compiler takes 32767"):
         cost.check(WIDEST, 26)
-
-
-def test_a_plan_as_text_and_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert plan("--state", "37", "--hidden", "40", "--classes", "26") == 0
-    text = capsys.readouterr().out
-    assert text.startswith("5 x 37 -> 40 -> 40 -> 37, 26 classes, 10,480 multiplications\n")
-    assert plan("--state", "37", "--hidden", "40", "--classes", "26", "--json") == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document == cost.check(Dimensions(37, 40, 40), 26).as_json()
-    assert document["fits"] is True
-    assert f"{document['flash_bytes']:,} bytes" in text
-    assert f"{document['shortest_period_ms']} ms" in text
-
-
-def test_a_plan_is_of_the_default_widths_with_all_classes(capsys: pytest.CaptureFixture[str]) -> None:
-    assert plan("--json") == 0
-    assert json.loads(capsys.readouterr().out) == cost.check(Dimensions(), 20).as_json()
-
-
-def test_a_plan_too_slow_for_the_period_fails_and_names_one(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(cost, "firmware_period_ms", lambda: 20)
-    assert str(cost.check(WIDE, 26)).startswith("fits a tile's memory, but not its period")
-    assert plan("--state", "51", "--hidden", "120", "--json") == 1
-    said = capsys.readouterr()
-    document = json.loads(said.out)
-    assert document["fits"] is False
-    assert said.err.count("\n") == 1
-    assert f"TILENCA_PERIOD_MS={document['shortest_period_ms']}" in said.err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--plan", "--state", "12", "--classes", "12"], "at least 13 channels"),
-        (["--plan", "--state", "1"], "'1' is not a whole number from 2 to 51"),
-        (["--plan", "--hidden", "128"], "'128' is not a whole number from 1 to 127"),
-        (["--plan", "--classes", "0"], "'0' is not a whole number from 1 to 50"),
-        (["--state", "30"], "--state: a trained model has its widths; add --plan"),
-        (["--plan", "--check"], "--plan writes nothing"),
-    ],
-)
-def test_a_plan_that_makes_no_sense(
-    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    try:
-        status = main(["export", *arguments])
-    except SystemExit as ended:
-        status = int(ended.code or 0)
-    said = capsys.readouterr()
-    assert status == 2
-    assert said.out == ""
-    assert said.err.count("\n") == 1
-    assert words in said.err

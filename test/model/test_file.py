@@ -5,7 +5,6 @@ import json
 import shutil
 import zipfile
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +13,8 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.model import format_1
-from tilenca.model.file import load_model
-from tilenca.training.recipes import Recipe
+from tilenca.model.file import Dimensions, load_model
+from tilenca.training.recipes import RECIPES
 
 
 @pytest.fixture
@@ -45,52 +43,6 @@ def test_a_model_survives_saving_and_loading(model: Path, tmp_path: Path) -> Non
     second = load_model(tmp_path / "copy")
     assert (second.model_id, second.labels, second.metadata) == (first.model_id, first.labels, first.metadata)
     assert all((second.floats[name] == first.floats[name]).all() for name in first.floats)
-
-
-def test_a_model_of_format_1_is_read_and_saved_as_format_2(model: Path, tmp_path: Path) -> None:
-    path = model / "model.json"
-    today = load_model(model)
-    about = json.loads(path.read_text())
-    recipe = {
-        "rounds": [14, 34],
-        "bounded": False,
-        "stretch": 10.0,
-        "average": 0.9995,
-        "quiet_rounds": [1, 2],
-    }
-    about |= {"format": 1, "made": {**about.pop("metadata"), "recipe": recipe}}
-    path.write_text(json.dumps(about))
-
-    old = load_model(model)
-    assert old.metadata == dict(today.metadata) | {
-        "recipe": {
-            "ticks": [14, 34],
-            "quantisation_aware": False,
-            "stretch": 10.0,
-            "ema_decay": 0.9995,
-            "undisturbed_ticks": [1, 2],
-        }
-    }
-    assert old.model_id == today.model_id, "tiles that carry the model know it by this id"
-
-    old.save(tmp_path / "copy")
-    written = json.loads((tmp_path / "copy" / "model.json").read_text())
-    assert (written["format"], written["model_id"]) == (2, about["model_id"])
-    assert load_model(tmp_path / "copy").metadata == old.metadata
-
-
-def test_format_1_has_an_old_name_for_settings_of_today_only() -> None:
-    settings = {field.name for field in fields(Recipe)}
-    assert set(format_1.RECIPE.values()) <= settings
-    assert not set(format_1.RECIPE) & settings, "an old name may not mean something else today"
-
-
-@pytest.mark.parametrize("made", [[1], None, {"recipe": "default"}])
-def test_wrong_metadata_of_format_1_are_refused(model: Path, made: Any) -> None:
-    path = model / "model.json"
-    about = json.loads(path.read_text()) | {"format": 1, "made": made}
-    path.write_text(json.dumps(about))
-    assert "metadata, and metadata.recipe" in refusal(model)
 
 
 @pytest.mark.parametrize(
@@ -152,3 +104,8 @@ def test_cut_or_changed_weights_are_refused(model: Path, damage: Callable[[bytes
     path = model / "weights.npz"
     path.write_bytes(damage(path.read_bytes()))
     assert refusal(model).startswith(str(path))
+
+
+def test_the_default_widths_are_those_of_the_shipped_digits() -> None:
+    assert Dimensions() == load_model(paths.DEFAULT_MODEL).dimensions
+    assert RECIPES["full"].hidden == Dimensions().hidden1

@@ -1,27 +1,14 @@
 """The Python twin of the protocol, on the cases that the C++ twin is tested with, and under fuzzing."""
 
 import importlib.util
-import re
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tilenca.base import paths
-from tilenca.protocol import constants as constants_of_python
-from tilenca.protocol.checksums import checksum, crc16
-from tilenca.protocol.commands import ask_command, blink_command, restart_command, set_command
-from tilenca.protocol.constants import MAX_COMMAND, MAX_SENTENCE, PROTOCOL_VERSION
-from tilenca.protocol.frames import (
-    Frame,
-    FrameDecoder,
-    cobs_decode,
-    cobs_encode,
-    decode_payload,
-    encode_frame,
-    encode_payload,
-)
+from support.vectors import VECTORS, cases
+from tilenca.protocol.checksums import checksum
+from tilenca.protocol.constants import MAX_SENTENCE, PROTOCOL_VERSION
 from tilenca.protocol.sentences import (
     AckSentence,
     ErrorSentence,
@@ -36,28 +23,7 @@ from tilenca.protocol.sentences import (
     framed,
     parse_sentence,
 )
-from tilenca.protocol.settings import Settings, parse_settings, settings_block
 
-VECTORS = paths.ROOT / "test" / "vectors"
-
-
-def cases(name: str) -> list[tuple[str, ...]]:
-    """The `CASE(...)` lines of a shared file; each argument as text, quotes removed."""
-    lines = re.findall(r"^CASE\((.*)\)$", (VECTORS / name).read_text(), flags=re.MULTILINE)
-    return [
-        tuple(re.sub(r'^"|"$', "", part) for part in re.findall(r'"[^"]*"|[^", ]+', line)) for line in lines
-    ]
-
-
-messages = st.integers(-127, 127)
-frames = st.builds(
-    Frame,
-    st.integers(0, 3),
-    st.integers(0, 255),
-    st.integers(0, 255),
-    st.integers(0, 0xFFFF),
-    st.lists(messages, min_size=1, max_size=51).map(tuple),
-)
 u8, u16, u32 = (st.integers(0, 2**bits - 1) for bits in (8, 16, 32))
 labels = st.sampled_from([*"0123456789AbCdEFGHhIJKLMnoPqrStUuVWXYZ-_="])
 links = st.tuples(*(st.sampled_from([side, "-"]) for side in "NESW")).map("".join)
@@ -80,23 +46,6 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
 )  # fmt: skip
 
 
-def events(decoder: FrameDecoder, line: bytes) -> list[str]:
-    """What a decoder says of a line, in the words of the shared file."""
-    found = []
-    for byte in line:
-        result = decoder.feed(byte)
-        if result is FrameDecoder.Result.CORRUPT:
-            found.append("corrupt")
-        elif result is FrameDecoder.Result.READY:
-            frame = decoder.frame
-            assert frame is not None
-            found.append(
-                f"ready {'NESW'[frame.side]} {frame.tile} {frame.sequence} {frame.model_id:04X} "
-                + " ".join(map(str, frame.messages))
-            )
-    return found
-
-
 def test_the_shared_files_are_what_their_script_writes() -> None:
     spec = importlib.util.spec_from_file_location("make_vectors", VECTORS / "make_vectors.py")
     assert spec is not None
@@ -105,50 +54,6 @@ def test_the_shared_files_are_what_their_script_writes() -> None:
     spec.loader.exec_module(script)
     for name, text in script.text_of_files().items():
         assert (VECTORS / name).read_text() == text, f"{name}: run python test/vectors/make_vectors.py"
-
-
-def constants(headers: list[Path]) -> dict[str, int]:
-    """`constexpr` integers of C++ headers whose value is a plain number, by their Python name."""
-    pattern = re.compile(r"constexpr \w+ k(\w+) = (\d+);")
-    found = {}
-    for header in headers:
-        for name, value in pattern.findall(header.read_text()):
-            found[re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).upper()] = int(value)
-    return found
-
-
-def test_constants_of_both_twins_agree() -> None:
-    folders = [paths.FIRMWARE / "include" / layer for layer in ("core", "app")]
-    cpp = constants([header for folder in folders for header in folder.glob("*.h")])
-    shared = {name for name in cpp if hasattr(constants_of_python, name)}
-    assert shared >= {
-        "PROTOCOL_VERSION", "KIND_STATE", "HEADER_SIZE", "CRC_SIZE", "MAX_CHANNELS", "MESSAGE_OFFSET",
-        "MESSAGE_MAX", "SILENT_PERIODS", "MAX_SENTENCE", "MAX_COMMAND", "MAX_BLINK_S",
-        "SETTINGS_SIZE", "SETTINGS_VERSION", "MIN_PERIOD_MS", "MAX_PERIOD_MS",
-    }  # fmt: skip
-    assert {name: cpp[name] for name in shared} == {
-        name: getattr(constants_of_python, name) for name in shared
-    }
-
-
-def test_crc_of_123456789_is_the_published_one() -> None:
-    assert crc16(b"123456789") == 0x29B1
-    assert crc16(b"") == 0xFFFF
-
-
-@pytest.mark.parametrize(("name", "channels", "line", "expected"), cases("frames.inc"))
-def test_frame_case(name: str, channels: str, line: str, expected: str) -> None:
-    assert ";".join(events(FrameDecoder(int(channels)), bytes.fromhex(line))) == expected
-
-
-@pytest.mark.parametrize(("name", "block", "expected"), cases("settings.inc"))
-def test_settings_case(name: str, block: str, expected: str) -> None:
-    settings = parse_settings(bytes.fromhex(block))
-    if expected == "ignored":
-        assert settings is None
-    else:
-        assert settings == Settings(*map(int, expected.split()))
-        assert settings_block(*map(int, expected.split())) == bytes.fromhex(block)
 
 
 SENTENCES: dict[str, Sentence] = {
@@ -183,43 +88,6 @@ def test_sentence_cases() -> None:
         assert format_sentence(sentence) == lines[name].encode() + b"\r\n"
 
 
-COMMANDS = {
-    "ask": ask_command(),
-    "set": set_command("period", 20),
-    "preset": set_command("preset", "paper"),
-    "blink": blink_command(60),
-    "restart": restart_command(),
-}
-
-
-def test_commands_are_those_of_the_shared_table() -> None:
-    lines = {name: bytes.fromhex(line) for name, line, _ in cases("commands.inc")}
-    for name, command in COMMANDS.items():
-        assert command == lines[name]
-
-
-@pytest.mark.parametrize(
-    ("name", "low", "high"),
-    [("id", 0, 255), ("period", 10, 10000), ("updates", 0, 65535), ("brightness", 0, 255)],
-)
-def test_settings_have_the_ranges_of_the_protocol(name: str, low: int, high: int) -> None:
-    assert set_command(name, low).startswith(b"$SET,%s,%d*" % (name.encode(), low))
-    assert len(set_command(name, high)) <= MAX_COMMAND
-    for value in (low - 1, high + 1, "7"):
-        with pytest.raises(ValueError, match=rf"{low}\.\.{high}"):
-            set_command(name, value)
-
-
-def test_commands_that_no_tile_takes_are_not_built() -> None:
-    with pytest.raises(ValueError, match="paper and default"):
-        set_command("preset", "fast")
-    with pytest.raises(ValueError, match="no setting 'color'"):
-        set_command("color", 3)
-    for seconds in (-1, 61):
-        with pytest.raises(ValueError, match=r"0\.\.60"):
-            blink_command(seconds)
-
-
 @pytest.mark.parametrize(
     ("text", "version"),
     [
@@ -237,42 +105,6 @@ def test_another_version_is_told_with_its_remedy(text: str, version: int) -> Non
     sentence = parse_sentence(framed(text))
     assert sentence == OtherVersionSentence(version, 7)
     assert f"protocol {version}, these tools speak 3: flash" in OtherVersionSentence(version, 7).remedy
-
-
-@given(st.binary(max_size=57))
-def test_cobs_has_no_zero_and_comes_back(payload: bytes) -> None:
-    encoded = cobs_encode(payload)
-    assert 0 not in encoded
-    assert len(encoded) == len(payload) + 1
-    assert cobs_decode(encoded) == payload
-
-
-def test_cobs_refuses_what_no_frame_holds() -> None:
-    with pytest.raises(ValueError, match="at most 58"):
-        cobs_encode(bytes(59))
-
-
-@given(st.binary(max_size=70))
-def test_cobs_decodes_only_what_it_would_encode(encoded: bytes) -> None:
-    payload = cobs_decode(encoded)
-    if payload is not None:
-        assert cobs_encode(payload) == encoded
-
-
-@given(frames)
-def test_a_frame_comes_back(frame: Frame) -> None:
-    assert decode_payload(encode_payload(frame), len(frame.messages)) == frame
-
-
-@given(frames, frames, st.binary(max_size=300))
-def test_a_good_frame_is_found_behind_any_bytes(before: Frame, frame: Frame, noise: bytes) -> None:
-    decoder = FrameDecoder(len(frame.messages))
-    for byte in encode_frame(before) + noise + b"\0":
-        decoder.feed(byte)
-    *early, last = (decoder.feed(byte) for byte in encode_frame(frame))
-    assert set(early) == {FrameDecoder.Result.PENDING}
-    assert last is FrameDecoder.Result.READY
-    assert decoder.frame == frame
 
 
 @given(sentences)
@@ -330,11 +162,3 @@ def test_a_good_checksum_alone_is_no_sentence(line: bytes) -> None:
 )
 def test_wrong_fields_with_a_good_checksum_are_refused(body: bytes) -> None:
     assert parse_sentence(b"$%s*%02X" % (body, checksum(body))) is None
-
-
-@pytest.mark.parametrize(
-    "values", [(256, 100, 0), (-1, 100, 0), (1, 9, 0), (1, 10001, 0), (1, 100, 65536), (1, 100, 0, 256)]
-)
-def test_settings_out_of_range_are_refused(values: tuple[int, ...]) -> None:
-    with pytest.raises(ValueError, match=r"must be \d+\.\.\d+"):
-        settings_block(*values)

@@ -13,7 +13,7 @@ SEED_STATE = 8192
 
 
 SIZES = [
-    Dimensions(),
+    Dimensions(21, 40, 40),
     Dimensions(1, 1, 1),
     Dimensions(3, 9, 7),
     Dimensions(51, 127, 127),

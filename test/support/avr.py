@@ -6,16 +6,21 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
+from support.alone import alone
 from support.conversation import Talk
-from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.base.paths import BUILD, FIRMWARE_ELF
 from tilenca.emulator import Array
 from tilenca.protocol.settings import settings_block
 
 ROOT = Path(__file__).resolve().parents[2]
+# What tests have compiled and others may use again, by its content.
+BUILT = BUILD / "test"
 
 Compile = Callable[..., Path]
 
@@ -105,17 +110,39 @@ def _compile_arduino(source: Path, target: Path, *options: str | Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def arduino_core(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Arduino's core for the Mega, compiled."""
+def arduino_core() -> Path:
+    """Arduino's core for the Mega, compiled once for all processes that run tests."""
     if not ARDUINO.exists() or shutil.which("avr-gcc") is None:
         pytest.skip("arduino-core-avr is not installed; run `make setup`")
-    directory = tmp_path_factory.mktemp("arduino")
     core = ARDUINO / "cores" / "arduino"
-    sources = [source for source in sorted(core.iterdir()) if source.suffix in LANGUAGES]
-    with ThreadPoolExecutor(2) as pool:
-        objects = list(pool.map(lambda one: _compile_arduino(one, directory / f"{one.name}.o"), sources))
-    run_tool("avr-ar", "rcs", directory / "core.a", *objects)
-    return directory / "core.a"
+    files = sorted(file for file in core.iterdir() if file.is_file())
+    sources = [file for file in files if file.suffix in LANGUAGES]
+    directory = BUILT / f"arduino-{_digest(MEGA, FOR_SIZE, LANGUAGES, *files)}"
+    archive = directory / "core.a"
+    with alone("arduino"):
+        if not archive.exists():
+            directory.mkdir(parents=True, exist_ok=True)
+            with ThreadPoolExecutor(2) as pool:
+                objects = list(
+                    pool.map(lambda one: _compile_arduino(one, directory / f"{one.name}.o"), sources)
+                )
+            run_tool("avr-ar", "rcs", directory / "core.part", *objects)
+            (directory / "core.part").rename(archive)
+    return archive
+
+
+@cache
+def _compiler() -> str:
+    return run_tool("avr-gcc", "--version")
+
+
+def _digest(*parts: object) -> str:
+    """Names a program by all that it is made of: files by their content, all else by its text."""
+    digest = sha256(_compiler().encode())
+    for part in parts:
+        digest.update(part.read_bytes() if isinstance(part, Path) else repr(part).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:16]
 
 
 @pytest.fixture

@@ -1,9 +1,6 @@
 """A lab of emulated tiles served as ports in this process, so that a test can pull and plug their cables."""
 
-import mmap
-import os
 import queue
-import struct
 import threading
 import time
 from collections.abc import Callable
@@ -11,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tilenca.base import paths
+from support.owned_clock import OwnedClock
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.emulator.types import port_name
@@ -20,9 +17,11 @@ from tilenca.shapes.file import load_task
 LIMIT_S = 600
 # avrdude waits five seconds of everybody's time for an answer: twenty tiles' step must not take that long.
 LONGEST_STEP_S = 0.01
+# While nobody has a port open, as when a command starts, time hardly passes: emulating twenty tiles takes a
+# whole processor.
+IDLE_STEP_S = 0.001
 # No avrdude takes so long to react, however busy this machine is.
 STANDSTILL_S = 10.0
-CLOCK = Path(__file__).with_name("lab_clock")
 # A bootloader's answer: this byte, a sequence number, the size (two bytes), a token, the body, a checksum.
 # What the firmware says is text.
 START, ENVELOPE = b"\x1b", 6
@@ -40,19 +39,12 @@ class Lab:
         self.folder = folder
         self.pattern = f"{folder}/tile-*"
         self._emulation = Emulation(task.shapes[0], task.labels, elf, conditions, firmware_settings(elf))
-        clock = folder / "clock"
-        clock.write_bytes(bytes(struct.calcsize("d")))
-        with clock.open("r+b") as file:
-            self._clock = mmap.mmap(file.fileno(), 0)
-        # For the commands that use the lab.
-        self.environment = {
-            **os.environ,
-            "PYTHONPATH": f"{CLOCK}:{paths.ROOT / 'host'}",
-            "TILENCA_LAB_CLOCK": str(clock),
-        }
+        self._clock = OwnedClock(folder / "clock")
+        self.environment = self._clock.environment  # for the commands that use the lab
         self.talks_s: list[float] = []  # the tiles' time at each answer of a bootloader
         self._answers: dict[ServedTile, bytes] = {}  # what each bootloader has said of its present one
         self._served: dict[int, ServedTile] = {}
+        self._is_watched = False  # whether a test waits for time to pass
         self._orders: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._serve, daemon=True)
 
@@ -81,8 +73,9 @@ class Lab:
         while True:
             time.sleep(max(0.0, last_s + STEP_S - time.monotonic()))
             now_s = time.monotonic()
-            self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S))
-            self._clock[:] = struct.pack("d", self.time_s)
+            in_use = self._is_watched or any(port.is_open for port in self._served.values())
+            self._emulation.pass_time(min(now_s - last_s, LONGEST_STEP_S if in_use else IDLE_STEP_S))
+            self._clock.seconds = self.time_s
             while not self._orders.empty():
                 if (order := self._orders.get()) is None:
                     return
@@ -134,8 +127,10 @@ class Lab:
     def pass_time(self, seconds: float) -> None:
         """Waits so long in the tiles' own time."""
         end_s = self.time_s + seconds
+        self._is_watched = True
         while self.time_s < end_s:
             self.do(lambda: None)
+        self._is_watched = False
 
     def unplug(self, tile: int) -> None:
         """Its port vanishes, whoever has it open; the tile goes on."""

@@ -15,13 +15,19 @@ LIMIT_S = 30
 
 
 class Device:
-    """A port that says something again and again, and answers; use it as a context manager."""
+    """A port that says something again and again, and answers; use it as a context manager.
+
+    Attributes:
+        said: how often it has said it.
+        heard: the lines that came, with their ends.
+    """
 
     def __init__(
         self, says: bytes = b"", answer: Callable[[bytes, int], bytes] = lambda line, count: b""
     ) -> None:
         self._says, self._answer = says, answer
         self.heard: list[bytes] = []
+        self.said = 0
 
     def __enter__(self) -> Self:
         self._master, self._slave = os.openpty()
@@ -44,6 +50,7 @@ class Device:
             ready, _, _ = select.select([self._master], [], [], STALE_S / 6)
             if not ready:
                 os.write(self._master, self._says)
+                self.said += 1
                 continue
             buffer += os.read(self._master, 4096)
             while buffer.endswith(b"\r\n"):

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from setup import native
+from support.alone import alone
 from support.avr import build_target
 from tilenca.base import paths
 
@@ -71,5 +72,6 @@ def test_a_clone_that_was_moved_is_configured_anew(tmp_path: Path) -> None:
 @pytest.mark.skipif(not PIO.exists(), reason="PlatformIO is not installed; run `make setup`")
 def test_the_core_builds_for_this_machine_without_its_tests() -> None:
     command = [str(PIO), "run", "-s", "-d", str(paths.ROOT), "-e", "native"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    with alone("pio"):
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr

@@ -86,7 +86,7 @@ def test_every_shipped_shape_has_as_many_frames_as_tiles() -> None:
 
 def test_colours_are_the_leds_and_only_where_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert "38;2;60;60;255;48;2;28;28;28m ┗━╸ " in shown(LIT, colour=True)
+    assert "38;2;76;76;240;48;2;28;28;28m ┗━╸ " in shown(LIT, colour=True)
     assert "\x1b" not in shown(LIT)
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b" not in shown(LIT, colour=True)

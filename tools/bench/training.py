@@ -77,7 +77,9 @@ def main() -> int:
         random,
         Circumstances(none, np.zeros(cells, np.bool_), ~none, np.zeros(cells, np.bool_)),
     )
-    net = TileNet(Dimensions(), False, initial_arrays(Dimensions(), random, zero_last=False))
+    net = TileNet(
+        Dimensions(21, 40, 40), False, initial_arrays(Dimensions(21, 40, 40), random, zero_last=False)
+    )
     with torch.no_grad():  # small steps, or states grow beyond what two orders of summation agree on
         net.get_parameter("w3").mul_(0.1)
     start = torch.zeros(cells, 21)

@@ -13,8 +13,8 @@ from firmware import cost_fit, stack
 from firmware.disassembly import disassemble, parse
 from firmware.elf import Firmware
 from tilenca.base.errors import TilencaError
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 
-PERIOD_MS = 20
 BUDGETS = Path(__file__).with_name("budgets.toml")
 
 
@@ -73,7 +73,7 @@ def check_text(firmware: Firmware, text: str) -> Finding:
 
 def check_cycles(elf: Path, limit: int) -> Finding:
     """Whether a tile of an array completes an update, its links included, in time."""
-    awake = cost_fit.awake(elf, PERIOD_MS)
+    awake = cost_fit.awake(elf, DEFAULT_PERIOD_MS)
     return Finding("cycles per update", f"{awake:,.0f}", f"{limit:,}", awake <= limit)
 
 

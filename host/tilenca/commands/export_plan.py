@@ -6,7 +6,7 @@ import json
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.commands.arguments import whole
 from tilenca.model import cost
-from tilenca.model.file import MAX_WIDTH, Dimensions
+from tilenca.model.file import DEFAULT_CHANNELS, DEFAULT_HIDDEN, MAX_WIDTH, Dimensions
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.views.table import table
 
@@ -20,10 +20,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--plan", action="store_true", help="print what widths cost; exit 1 if they are too slow"
     )
     group.add_argument(
-        "--state", type=whole(2, MAX_CHANNELS), metavar="C", help="channels of the state (default 21)"
+        "--state",
+        type=whole(2, MAX_CHANNELS),
+        metavar="C",
+        help=f"channels of the state (default {DEFAULT_CHANNELS})",
     )
     group.add_argument(
-        "--hidden", type=whole(1, MAX_WIDTH), metavar="H", help="width of both hidden layers (default 40)"
+        "--hidden",
+        type=whole(1, MAX_WIDTH),
+        metavar="H",
+        help=f"width of both hidden layers (default {DEFAULT_HIDDEN})",
     )
     group.add_argument(
         "--classes",

@@ -18,9 +18,10 @@ from tilenca.base.errors import UsageError
 from tilenca.commands.arguments import count, seed, share, whole
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.file import Shape
-from tilenca.shapes.glyphs import BLANK, colour_of_class, glyph
+from tilenca.shapes.glyphs import DARK_LOOK, look_of_class
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.rollout_library import DARK
 from tilenca.simulator.simulator import Conditions, Simulator, processors
@@ -32,7 +33,7 @@ DEFAULT_STEPS = 60
 RUNS = 100
 MAX_SIDE = 1000  # of an array
 MAX_THREADS = 256
-STEP_S = 0.1  # the tiles' own period, unless somebody sets another
+STEP_S = DEFAULT_PERIOD_MS / 1000  # at the pace of real tiles
 ALL = "all"
 
 
@@ -235,8 +236,8 @@ def _steps(count: int) -> str:
 
 def picture_of(shape: Shape, labels: tuple[str, ...], shown: NDArray[np.int8]) -> Picture:
     """The drawing with the class that each tile shows, `DARK` for none."""
-    segments = tuple(BLANK if k == DARK else glyph(labels[k]) for k in shown)
-    return Picture(shape, segments, tuple((0, 0, 0) if k == DARK else colour_of_class(int(k)) for k in shown))
+    looks = [DARK_LOOK if k == DARK else look_of_class(labels, int(k)) for k in shown]
+    return Picture(shape, tuple(look.segments for look in looks), tuple(look.colour for look in looks))
 
 
 def _watch(simulator: Simulator, shape: Shape, labels: tuple[str, ...], steps: int) -> None:

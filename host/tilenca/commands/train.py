@@ -19,7 +19,7 @@ from tilenca.commands.arguments import count, seed, whole
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
-from tilenca.model.file import MAX_WIDTH, checkpoints
+from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.training.device import check_device
 from tilenca.training.recipes import RECIPES, aims_of, find_recipe
@@ -67,9 +67,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--state",
         type=whole(2, MAX_CHANNELS),
-        default=21,
+        default=DEFAULT_CHANNELS,
         metavar="C",
-        help="channels of the state (default 21)",
+        help=f"channels of the state (default {DEFAULT_CHANNELS})",
     )
     parser.add_argument(
         "--hidden",

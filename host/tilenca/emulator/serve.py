@@ -74,6 +74,11 @@ class ServedTile:
                 os.write(self._master, said)
         return said
 
+    @property
+    def is_open(self) -> bool:
+        """Whether anybody had the port open at the last exchange."""
+        return self._is_open
+
     def is_spoken_to(self) -> bool:
         """Whether bytes have come for the tile, or the port was closed."""
         return bool(self._poll.poll(0))

@@ -10,7 +10,7 @@ from tilenca.fleet.layout import arrange
 from tilenca.fleet.link_health import FAILING
 from tilenca.fleet.state import Fleet, TileView
 from tilenca.fleet.tiles_file import Place
-from tilenca.shapes.glyphs import colour_number, colour_of_class
+from tilenca.shapes.glyphs import look_of
 
 Position = tuple[int, int]
 
@@ -157,7 +157,7 @@ def _colour(view: TileView) -> tuple[int, int, int]:
     state = view.tile
     if state is None or state.class_index is None:
         return (0, 0, 0)
-    return colour_of_class(colour_number(state.label, state.class_index))
+    return look_of(state.label, state.class_index).colour
 
 
 def _mark(view: TileView, side: str) -> Mark:

@@ -80,6 +80,7 @@ def ask_all(
     user: str,
     report: Callable[[str, Answer], None] = lambda name, answer: None,
     patience_s: float = PATIENCE_S,
+    clock: Callable[[], float] = time.monotonic,
 ) -> dict[str, Answer]:
     """Asks the tiles behind the ports; opening a port may reset its tile.
 
@@ -88,12 +89,13 @@ def ask_all(
         user: the command that asks, to be named to others that want a port meanwhile.
         report: called with each answer as it comes.
         patience_s: how long a tile may say nothing.
+        clock: seconds that only grow.
 
     Returns:
         An answer for each port, in the order of `names`.
     """
-    with PortReader(names, clock=time.monotonic, user=user) as reader:
-        return ask(reader, names, report, patience_s=patience_s)
+    with PortReader(names, clock=clock, user=user) as reader:
+        return ask(reader, names, report, patience_s=patience_s, clock=clock)
 
 
 def ask(
@@ -102,18 +104,19 @@ def ask(
     report: Callable[[str, Answer], None] = lambda name, answer: None,
     hear: Callable[[Event], None] = lambda event: None,
     patience_s: float = PATIENCE_S,
+    clock: Callable[[], float] = time.monotonic,
 ) -> dict[str, Answer]:
     """As `ask_all`, with ports that stay open; `hear` gets every event meanwhile."""
     asked = {name: _Asked(patience_s) for name in names}
     for name in asked.keys() & set(reader.open):
-        asked[name].begin(time.monotonic(), time.monotonic())
+        asked[name].begin(clock(), clock())
     waiting = set(asked)
     while waiting:
         for event in reader.poll(TICK_S):
             hear(event)
             if event.port in waiting:
-                asked[event.port].take(event, time.monotonic())
-        now_s = time.monotonic()
+                asked[event.port].take(event, clock())
+        now_s = clock()
         for name in sorted(waiting):
             tile = asked[name]
             if tile.answer is None and now_s >= tile.end_s:

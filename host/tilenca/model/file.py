@@ -30,6 +30,8 @@ NEIGHBOURHOOD = 5  # von Neumann's: own state, then N, E, S, W
 SCALES = {"w1": 64, "w2": 64, "w3": 128, "b1": 4096, "b2": 4096, "b3": 8192}
 LARGEST = {"w1": 127, "w2": 127, "w3": 127, "b1": 32767, "b2": 32767, "b3": 32767}
 MAX_WIDTH = 127
+# What the shipped digits have: channels of the state, and the width of both hidden layers.
+DEFAULT_CHANNELS, DEFAULT_HIDDEN = 21, 96
 
 
 def checkpoint_path(directory: Path, seed: int) -> Path:
@@ -48,11 +50,11 @@ DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.Ba
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The network's widths: 5 * channels -> hidden1 -> hidden2 -> channels."""
+    """The network's widths: 5 * channels -> hidden1 -> hidden2 -> channels; by default the digits'."""
 
-    channels: int = 21
-    hidden1: int = 40
-    hidden2: int = 40
+    channels: int = DEFAULT_CHANNELS
+    hidden1: int = DEFAULT_HIDDEN
+    hidden2: int = DEFAULT_HIDDEN
 
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of every weight array, by name, in the order they are stored and hashed."""

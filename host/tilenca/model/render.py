@@ -9,7 +9,6 @@ import os
 import re
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from tilenca.base.errors import BuildError
 from tilenca.model import cost, packing
 from tilenca.model.file import Model
-from tilenca.shapes.glyphs import GLYPHS, colour_number, colour_of_class
+from tilenca.shapes.glyphs import looks_of
 
 # Template and, below the firmware's folder, the file it renders.
 TEMPLATES = {"model.h.j2": Path("include/model/model.h"), "model.cpp.j2": Path("src/model/model.cpp")}
@@ -29,23 +28,6 @@ ROW_LINES = 4  # rows of weights per line of C++
 HEADER = re.compile(
     r"// Rendered by `tilenca export` from model ([0-9A-F]{4}); do not edit. Body ([0-9a-f]{16})\n"
 )
-
-
-@dataclass(frozen=True)
-class Look:
-    """How a class looks on a tile: twin of `Look` in firmware/include/core/model.h."""
-
-    label: str
-    segments: int
-    colour: tuple[int, int, int]
-
-
-def looks_of(labels: tuple[str, ...]) -> list[Look]:
-    """Glyph and colour of every class; a decimal digit has its own colour wherever it stands."""
-    return [
-        Look(label, GLYPHS[label], colour_of_class(colour_number(label, index)))
-        for index, label in enumerate(labels)
-    ]
 
 
 def check_fits(model: Model) -> None:

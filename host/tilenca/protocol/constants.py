@@ -27,6 +27,7 @@ SETTINGS_SIZE = 12
 SETTINGS_VERSION = 2
 MIN_PERIOD_MS = 10
 MAX_PERIOD_MS = 10000
+DEFAULT_PERIOD_MS = 20  # as platformio.ini builds it into the firmware
 MAX_BRIGHTNESS = 255
 SETTING_RANGES = {
     "id": (0, 255),

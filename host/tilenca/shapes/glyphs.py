@@ -9,6 +9,10 @@ A glyph is a bit mask of segments, bit 0 = a ... bit 6 = g, bit 7 = dp::
      ddd  dp
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
 SEGMENT_NAMES = "abcdefg"
 DECIMAL_POINT = 1 << 7
 BLANK = 0
@@ -27,6 +31,8 @@ GLYPHS: dict[str, int] = {
     label: sum(1 << SEGMENT_NAMES.index(name) for name in lit) for label, lit in _LIT.items()
 }
 
+_DIGITS = frozenset("0123456789")
+
 # Duty of 255 per colour, tuned by the paper's authors to the brightness of their LEDs and resistors.
 # In order: white, green, blue, orange, aquamarine, purple, yellow, red, pink, pale.
 _PAPER_COLOURS: tuple[tuple[int, int, int], ...] = (
@@ -34,33 +40,70 @@ _PAPER_COLOURS: tuple[tuple[int, int, int], ...] = (
     (40, 12, 60), (50, 50, 0), (55, 0, 0), (75, 25, 30), (25, 15, 15),
 )  # fmt: skip
 
-# How LEDs become colours of a screen.
+# A screen shows LEDs as bright as it gets, since they are dim and screens are not, and a little pale.
 SCREEN_GAMMA, SCREEN_PALENESS, SCREEN_PEAK, SCREEN_SHADE = 1.6, 0.3, 0.94, 0.68
 
+Duty: TypeAlias = tuple[int, int, int]
 
-def colour_of_class(index: int) -> tuple[int, int, int]:
-    """RGB duty (0..255 each) of a class; the paper's ten, then the same ones at a third, then at a ninth."""
-    red, green, blue = _PAPER_COLOURS[index % len(_PAPER_COLOURS)]
-    dim = 3 ** (index // len(_PAPER_COLOURS))
+
+@dataclass(frozen=True)
+class Look:
+    """How a class looks on a tile: twin of `Look` in firmware/include/core/model.h.
+
+    Attributes:
+        label: the character that names it.
+        segments: the bit mask that shows the label.
+        colour: RGB duty, 0..255 each.
+    """
+
+    label: str
+    segments: int
+    colour: Duty
+
+
+# A tile that shows nothing.
+DARK_LOOK = Look("", BLANK, (0, 0, 0))
+
+
+def look_of(label: str, index: int) -> Look:
+    """How the class `index` looks that is called `label`: the one rule for tiles, screens and films.
+
+    A decimal digit has its own colour wherever it stands among the classes; another label has that of its
+    index. A label that no 7-segment digit can show, which only a foreign tile may have, lights none.
+    """
+    return Look(label, GLYPHS.get(label, BLANK), _colour(int(label) if label in _DIGITS else index))
+
+
+def look_of_class(labels: Sequence[str], index: int) -> Look:
+    """How a class of a model with these labels looks."""
+    return look_of(labels[index], index)
+
+
+def looks_of(labels: Sequence[str]) -> list[Look]:
+    """How every class looks, in their order."""
+    return [look_of_class(labels, index) for index in range(len(labels))]
+
+
+def _colour(number: int) -> Duty:
+    """RGB duty: the paper's ten, then the same ones at a third, then at a ninth."""
+    red, green, blue = _PAPER_COLOURS[number % len(_PAPER_COLOURS)]
+    dim = 3 ** (number // len(_PAPER_COLOURS))
     return (-(-red // dim), -(-green // dim), -(-blue // dim))
 
 
-def colour_number(label: str, index: int) -> int:
-    """The class whose colour a label has: its own, but a decimal digit has one wherever it stands."""
-    return int(label) if label in "0123456789" else index
+# How often each colour was dimmed; where two are the same in so few steps of duty, the brighter one counts.
+_DIMMED = {_colour(number): number // len(_PAPER_COLOURS) for number in reversed(range(30))}
 
 
-def screen_colour(number: int) -> tuple[float, float, float]:
-    """RGB (0..1 each) in which a screen shows `colour_of_class(number)`.
-
-    As bright as it gets, since LEDs are dim and screens are not, and a little pale; the dimmer repetitions
-    are darker shades.
-    """
-    duty = _PAPER_COLOURS[number % len(_PAPER_COLOURS)]
-    shade = SCREEN_SHADE ** (number // len(_PAPER_COLOURS))
+def screen_colour(duty: Duty) -> tuple[float, float, float]:
+    """RGB (0..1 each) in which a screen shows an LED of this duty; dimmer repetitions are darker shades."""
+    strongest = max(duty)
+    if strongest == 0:
+        return (0.0, 0.0, 0.0)
+    shade = SCREEN_SHADE ** _DIMMED.get(duty, 0)
 
     def brightness(part: int) -> float:
-        lifted: float = (part / max(duty)) ** (1 / SCREEN_GAMMA)
+        lifted: float = (part / strongest) ** (1 / SCREEN_GAMMA)
         return shade * (SCREEN_PALENESS + (SCREEN_PEAK - SCREEN_PALENESS) * lifted)
 
     return brightness(duty[0]), brightness(duty[1]), brightness(duty[2])

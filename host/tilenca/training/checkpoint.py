@@ -6,7 +6,7 @@ from typing import Any
 
 import torch
 
-from tilenca.base.errors import UsageError
+from tilenca.base.errors import TilencaError, UsageError
 
 State = dict[str, Any]
 
@@ -20,7 +20,7 @@ def write_checkpoint(path: Path, config: State, state: State) -> None:
         state: plain values and tensors.
 
     Raises:
-        OSError: the disk is full or not writable.
+        TilencaError: the disk is full or not writable.
     """
     buffer = io.BytesIO()
     torch.save({"config": config, **state}, buffer)  # torch's exception hides a full disk
@@ -28,6 +28,8 @@ def write_checkpoint(path: Path, config: State, state: State) -> None:
     try:
         partial.write_bytes(buffer.getbuffer())
         partial.replace(path)
+    except OSError as error:
+        raise TilencaError(f"{path}: {error.strerror}; make room there, or give another --out") from error
     finally:
         partial.unlink(missing_ok=True)
 

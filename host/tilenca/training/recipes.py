@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from tilenca.base.errors import UsageError
 from tilenca.evaluation.suites import Aims
+from tilenca.model.file import DEFAULT_HIDDEN
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ class Recipe:
 # For real tiles: no tile is reset, clocks differ, messages and tiles get lost, states must not drift, and
 # tiles must not name a shape that is none of the task's.
 FULL = Recipe(
-    hidden=96,
+    hidden=DEFAULT_HIDDEN,
     iterations=40_000,
     batch=32,
     ticks=(14, 34),

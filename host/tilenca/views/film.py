@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES, colour_number, screen_colour
+from tilenca.shapes.glyphs import SEGMENT_NAMES, look_of_class, screen_colour
 from tilenca.simulator.trace import NOTHING, Film
 from tilenca.views.plots import FAINT, INK, WIDTH_IN, save, styled, unwritable
 
@@ -77,12 +77,12 @@ def draw_tiles(axes: Axes, film: Film, step: int) -> None:
         fill: tuple[float, float, float] | str = DARK
         edge: tuple[float, ...] | str = DARK_EDGE
         if shown != NOTHING:
-            label = film.labels[shown]
-            fill = screen_colour(colour_number(label, int(shown)))
+            look = look_of_class(film.labels, int(shown))
+            fill = screen_colour(look.colour)
             edge = tuple(0.72 * part for part in fill)
             ink = INK if luminance(fill) > BRIGHT else WHITE
             for bit, name in enumerate(SEGMENT_NAMES):
-                if GLYPHS[label] >> bit & 1:
+                if look.segments >> bit & 1:
                     digits[ink].append([(col + x, row + y) for x, y in segment(name)])
         axes.add_patch(
             FancyBboxPatch(

@@ -5,12 +5,11 @@ from contextlib import contextmanager
 from typing import Protocol
 
 from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bars
+from rich.progress import TimeElapsedColumn
 
 from tilenca.base.stdio import warn
 from tilenca.fleet.avrdude import Progress
+from tilenca.views.progress import Bars, show_bars
 
 # Where on the bar each phase starts, and how much of it the phase takes.
 SPANS = {
@@ -25,6 +24,7 @@ SPANS = {
 # How wide the columns are, gaps included, and from what width of the terminal on there is room for all.
 PHASE, TIME, LEAST_BAR, WIDE_BAR = 14, 8, 8, 30
 NARROW = 90
+ALL = "all"  # the bar of all boards together; no port has such a name
 LEAST_TITLE = 12
 
 
@@ -58,36 +58,34 @@ class _Lines:
             warn(f"{self._titles[name]}: {text}")
 
 
-class _Bars:
+class _BoardBars:
     """Progress as one bar per board, and one for all of them."""
 
     def __init__(self, bars: Bars, titles: Mapping[str, str]) -> None:
         self._bars = bars
-        self._tasks = {
-            name: bars.add_task(escape(title), total=1.0, start=False, phase="waiting")
-            for name, title in titles.items()
-        }
-        self._all = bars.add_task("all", total=float(len(titles)), phase="") if len(titles) > 1 else None
+        for name, title in titles.items():
+            bars.add(name, title, note="waiting", begun=False)
+        self._has_total = len(titles) > 1
+        if self._has_total:
+            bars.add(ALL, ALL, total=float(len(titles)))
         self._shares = dict.fromkeys(titles, 0.0)
         self._done = 0
 
     def show(self, name: str, progress: Progress) -> None:
-        task = self._tasks[name]
         start, width = SPANS[progress.phase]
-        self._bars.start_task(task)
         self._move(name, start + width * progress.share, progress.phase)
 
     def done(self, name: str, result: str, error: str | None) -> None:
         self._done += 1
         self._move(name, 1.0 if error is None else self._shares[name], result)
-        self._bars.stop_task(self._tasks[name])
+        self._bars.stop(name)
 
     def _move(self, name: str, share: float, phase: str) -> None:
         self._shares[name] = share
-        self._bars.update(self._tasks[name], completed=share, phase=phase)
-        if self._all is not None:
-            about = f"{self._done} of {len(self._tasks)} done"
-            self._bars.update(self._all, completed=sum(self._shares.values()), phase=about)
+        self._bars.move(name, share, phase)
+        if self._has_total:
+            about = f"{self._done} of {len(self._shares)} done"
+            self._bars.move(ALL, sum(self._shares.values()), about)
 
 
 def ending(title: str, room: int) -> str:
@@ -104,12 +102,7 @@ def display(titles: Mapping[str, str]) -> Iterator[Display]:
         yield _Lines(titles)
         return
     narrow = console.width < NARROW
-    columns = [
-        TextColumn("{task.description}"),
-        BarColumn(LEAST_BAR if narrow else WIDE_BAR),
-        *([] if narrow else [TimeElapsedColumn()]),
-        TextColumn("{task.fields[phase]}"),
-    ]
     room = console.width - (LEAST_BAR + PHASE if narrow else WIDE_BAR + TIME + PHASE)
-    with Bars(*columns, console=console) as bars:
-        yield _Bars(bars, {name: ending(title, room) for name, title in titles.items()})
+    width, time = (LEAST_BAR, None) if narrow else (WIDE_BAR, TimeElapsedColumn)
+    with show_bars(console, width, time) as bars:
+        yield _BoardBars(bars, {name: ending(title, room) for name, title in titles.items()})

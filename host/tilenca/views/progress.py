@@ -5,33 +5,81 @@ from contextlib import contextmanager
 from typing import TypeAlias
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, TaskID, TextColumn, TimeElapsedColumn
+
+BAR_WIDTH = 24
 
 # Takes the name of the piece, the share of it that is done, and a note; a share of 1 or more ends it.
 Tell: TypeAlias = Callable[[str, float, str], None]
 
 
+class Bars:
+    """A title, a bar and a note for each piece of work; from any thread."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._tasks: dict[str, TaskID] = {}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._tasks
+
+    def add(self, name: str, title: str, total: float = 1.0, note: str = "", begun: bool = True) -> None:
+        """Adds a piece of work; its time counts from now or, if it has not `begun`, from its first move."""
+        self._tasks[name] = self._progress.add_task(title, total=total, note=note, start=begun)
+
+    def move(self, name: str, done: float, note: str) -> None:
+        """So much of the piece's total is done."""
+        task = self._tasks[name]
+        self._progress.start_task(task)
+        self._progress.update(task, completed=done, note=note)
+
+    def stop(self, name: str) -> None:
+        """Its time counts no further."""
+        self._progress.stop_task(self._tasks[name])
+
+    def remove(self, name: str) -> None:
+        """Takes the bar away, once its end was seen."""
+        self._progress.refresh()
+        self._progress.remove_task(self._tasks.pop(name))
+
+
+@contextmanager
+def show_bars(
+    console: Console,
+    width: int = BAR_WIDTH,
+    time: type[ProgressColumn] | None = TimeElapsedColumn,
+    transient: bool = False,
+) -> Iterator[Bars]:
+    """Bars while the block runs, if the console is a terminal.
+
+    Args:
+        console: where.
+        width: of the bars, in characters.
+        time: the column that tells the time that passed, or is left; None: there is no room for it.
+        transient: whether all of it vanishes at the end.
+    """
+    columns = [
+        TextColumn("{task.description}", markup=False),
+        BarColumn(width),
+        TextColumn("{task.fields[note]}", markup=False),
+        *([] if time is None else [time()]),
+    ]
+    with Progress(
+        *columns, console=console, transient=transient, disable=not console.is_terminal
+    ) as progress:
+        yield Bars(progress)
+
+
 @contextmanager
 def show_progress() -> Iterator[Tell]:
     """Shows what it is told, from any thread, and leaves nothing behind."""
-    console = Console(stderr=True)
-    bar = Progress(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(bar_width=24),
-        TextColumn("{task.fields[note]}", markup=False),
-        TimeElapsedColumn(),
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-    )
-    tasks: dict[str, TaskID] = {}
+    with show_bars(Console(stderr=True), transient=True) as bars:
 
-    def tell(name: str, share: float, note: str) -> None:
-        if name not in tasks:
-            tasks[name] = bar.add_task(name, total=1.0, note=note)
-        bar.update(tasks[name], completed=share, note=note, refresh=share >= 1.0)
-        if share >= 1.0:
-            bar.remove_task(tasks.pop(name))
+        def tell(name: str, share: float, note: str) -> None:
+            if name not in bars:
+                bars.add(name, name)
+            bars.move(name, share, note)
+            if share >= 1.0:
+                bars.remove(name)
 
-    with bar:
         yield tell

@@ -7,7 +7,7 @@ from rich.console import Console, Group
 from rich.text import Text
 
 from tilenca.shapes.file import Shape
-from tilenca.shapes.glyphs import draw
+from tilenca.shapes.glyphs import Duty, draw, screen_colour
 
 # Box-drawing characters by their arms: 1 up, 2 right, 4 down, 8 left.
 LIGHT = " ╵╶╰╷│╭├╴╯─┴╮┤┬┼"
@@ -15,7 +15,6 @@ HEAVY = " ╹╺┗╻┃┏┣╸┛━┻┓┫┳╋"
 UP, RIGHT, DOWN, LEFT = 1, 2, 4, 8
 
 TILE_WIDTH = 5
-PALENESS = 60
 SHAPE_GAP = "  "
 # A housing of its own, so that a digit can be read on any terminal's background.
 HOUSING = "on rgb(28,28,28)"
@@ -28,15 +27,14 @@ class Picture:
 
     shape: Shape
     segments: tuple[int, ...]
-    colours: tuple[tuple[int, int, int], ...]
+    colours: tuple[Duty, ...]
 
 
-def led_style(colour: tuple[int, int, int]) -> str:
-    """The LED's hue, brighter than the dim LEDs are, and paler, since pure blue is hard to read."""
-    strongest = max(colour)
-    if strongest == 0:
+def led_style(duty: Duty) -> str:
+    """The LED as a terminal shows it; dark where it is off."""
+    if not any(duty):
         return HOUSING
-    red, green, blue = (PALENESS + round((255 - PALENESS) * duty / strongest) for duty in colour)
+    red, green, blue = (round(255 * part) for part in screen_colour(duty))
     return f"rgb({red},{green},{blue}) {HOUSING}"
 
 

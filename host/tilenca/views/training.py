@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import TimeRemainingColumn
 
-from tilenca.training.progress import Progress as News
-from tilenca.training.progress import Tell
+from tilenca.training.progress import Progress, Tell
+from tilenca.views.progress import show_bars
 
 LINES = 10  # per seed, where there is no terminal
 
@@ -23,35 +23,27 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
         total: iterations of each.
     """
     console = Console(stderr=True)
-    bar = Progress(
-        TextColumn("seed {task.description}"),
-        BarColumn(bar_width=24),
-        TextColumn("{task.completed}/{task.total}  {task.fields[note]}"),
-        TimeRemainingColumn(),
-        console=console,
-        disable=not console.is_terminal,
-    )
-    with bar:
-        tasks = {seed: bar.add_task(str(seed), total=total, note="", start=False) for seed in seeds}
+    with show_bars(console, time=TimeRemainingColumn) as bars:
+        for seed in seeds:
+            bars.add(f"{seed}", f"seed {seed}", total, f"0/{total}", begun=False)
         first: dict[int, tuple[float, int]] = {}
         printed = dict.fromkeys(seeds, 0)
 
-        def tell(news: News) -> None:
+        def tell(news: Progress) -> None:
             if news.seed not in first:
                 first[news.seed] = time.monotonic(), news.iteration
-                bar.start_task(tasks[news.seed])
             begun, iteration = first[news.seed]
             rate = (news.iteration - iteration) / max(time.monotonic() - begun, 1e-9)
-            note = _note(news, rate)
-            bar.update(tasks[news.seed], completed=news.iteration, note=note)
+            note = f"{news.iteration}/{total}  {_note(news, rate)}"
+            bars.move(f"{news.seed}", news.iteration, note)
             if not console.is_terminal and news.iteration * LINES // total > printed[news.seed]:
                 printed[news.seed] = news.iteration * LINES // total
-                print(f"seed {news.seed}: {news.iteration}/{total}  {note}", file=sys.stderr, flush=True)
+                print(f"seed {news.seed}: {note}", file=sys.stderr, flush=True)
 
         yield tell
 
 
-def _note(news: News, rate: float) -> str:
+def _note(news: Progress, rate: float) -> str:
     note = f"loss {news.loss:.4f}  agree {news.agreement:.3f}  {rate:.0f}/s"
     if news.check is not None:
         held, asked, shortfall = news.check

@@ -1,8 +1,8 @@
-"""Lets the commands that a lab's tests start go by the lab's clock, which is that of its tiles.
+"""Lets the commands that a test starts go by the test's clock, such as that of a lab's tiles.
 
-Python imports this first wherever its folder is on the path, see `lab.Lab.environment`. A real tile's second
-is everybody's; an emulated one's takes as long as this machine needs. So no command loses patience with tiles
-that are slow only because the machine has other work.
+Python imports this first wherever its folder is on the path, see `OwnedClock.environment`. A real tile's
+second is everybody's; an emulated one's takes as long as this machine needs. So no command loses patience
+with tiles that are slow only because the machine has other work.
 """
 
 import mmap

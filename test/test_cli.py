@@ -2,7 +2,6 @@
 
 import importlib
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -163,27 +162,3 @@ def test_a_defect_of_ours_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(devices, "run", lambda _: 1 // 0)
     with pytest.raises(ZeroDivisionError):
         main(["devices"])
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
-def test_polite_ends_are_one_and_handlers_are_restored(
-    number: signal.Signals, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    before = signal.getsignal(number)
-    monkeypatch.setattr(devices, "run", lambda _: signal.raise_signal(number))
-    assert main(["devices"]) == 130
-    assert capsys.readouterr().err == "tilenca: interrupted\n"
-    assert signal.getsignal(number) is before
-
-
-def test_what_nohup_ignores_stays_ignored(monkeypatch: pytest.MonkeyPatch) -> None:
-    def hang_up(_: object) -> int:
-        signal.raise_signal(signal.SIGHUP)
-        return 0
-
-    monkeypatch.setattr(devices, "run", hang_up)
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        assert main(["devices"]) == 0
-    finally:
-        signal.signal(signal.SIGHUP, before)

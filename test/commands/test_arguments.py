@@ -1,0 +1,82 @@
+"""The values that commands take, and how wrong ones are refused."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tilenca.commands import arguments
+from tilenca.commands.arguments import Parser, add_fleet_arguments
+
+
+@pytest.mark.parametrize(
+    ("parse", "text", "value"),
+    [
+        (arguments.positive, "0.001", 0.001),
+        (arguments.positive, "1e3", 1000.0),
+        (arguments.not_negative, "0", 0.0),
+        (arguments.share, "1", 1.0),
+        (arguments.count, "1000000", 1_000_000),
+        (arguments.seed, "0", 0),
+        (arguments.seed, str(2**63 - 1), 2**63 - 1),
+        (arguments.whole(-3, 3), "-3", -3),
+        (arguments.size, "5x4", (5, 4)),
+    ],
+)
+def test_the_limits_themselves_are_taken(parse: Callable[[str], Any], text: str, value: Any) -> None:
+    assert parse(text) == value
+
+
+@pytest.mark.parametrize(
+    ("parse", "text", "words"),
+    [
+        (arguments.positive, "0", "'0' is not a number from 0.001"),
+        (arguments.positive, "inf", "is not a number from 0.001"),
+        (arguments.not_negative, "nan", "'nan' is not a number from 0"),
+        (arguments.not_negative, "", "'' is not a number from 0"),
+        (arguments.share, "1.1", "from 0 to 1"),
+        (arguments.share, "-0.1", "from 0 to 1"),
+        (arguments.count, "0", "'0' is not a whole number from 1 to 1000000"),
+        (arguments.count, "1.5", "'1.5' is not a whole number"),
+        (arguments.count, "1000001", "from 1 to 1000000"),
+        (arguments.seed, str(2**63), "is not a whole number"),
+        (arguments.size, "5", "5"),
+    ],
+)
+def test_what_lies_beyond_is_refused_with_the_range(
+    parse: Callable[[str], Any], text: str, words: str
+) -> None:
+    with pytest.raises(argparse.ArgumentTypeError) as caught:
+        parse(text)
+    assert words in str(caught.value)
+
+
+def test_a_complaint_is_one_line_with_the_way_to_help(capsys: pytest.CaptureFixture[str]) -> None:
+    parser = Parser(prog="tilenca emulate")
+    parser.add_argument("--runs", type=arguments.count)
+    with pytest.raises(SystemExit, match="2"):
+        parser.parse_args(["--runs", "a\nb"])
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("tilenca emulate: argument --runs: 'a b' is not a whole number")
+    assert said.err.endswith("; see tilenca emulate --help\n")
+    assert said.err.count("\n") == 1
+
+
+def test_an_unknown_option_is_refused_by_the_subcommand_that_does_not_know_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    parser = Parser(prog="tilenca")
+    parser.add_subparsers().add_parser("emulate")
+    with pytest.raises(SystemExit, match="2"):
+        parser.parse_args(["emulate", "--fly"])
+    assert capsys.readouterr().err.startswith("tilenca emulate: unrecognized arguments: --fly")
+
+
+def test_ports_add_up_and_none_is_the_default() -> None:
+    parser = Parser()
+    add_fleet_arguments(parser)
+    assert parser.parse_args([]).port == []
+    found = parser.parse_args(["--port", "/dev/a", "--port", "/dev/b*", "--tiles", "f.toml"])
+    assert (found.port, str(found.tiles)) == (["/dev/a", "/dev/b*"], "f.toml")

@@ -1,0 +1,51 @@
+"""What a model is asked: what training never saw, and what it was trained for."""
+
+from tilenca.base import paths
+from tilenca.evaluation.suites import Aims, make_suite
+from tilenca.shapes import variants
+from tilenca.shapes.batch import load_training_task
+from tilenca.shapes.file import UNKNOWN
+from tilenca.training.recipes import RECIPES, aims_of
+
+
+def test_the_exam_asks_for_what_training_never_saw() -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
+    labels = (*task.labels, UNKNOWN)
+    suite = make_suite(task, sizes, labels, Aims(10.0, True, True), seed=1)
+    assert [case.name for case in suite.drawn] == ["digits.toml", "digits-3x3.toml"]
+    held_out = [case for case in suite.sizes if case.held_out]
+    assert [case.name.split(",")[0] for case in held_out] == [
+        "8x5",
+        "9x7",
+        "11x9",
+        "13x10",
+        "14x12",
+        "20x16",
+    ]
+    assert [case.steps for case in held_out] == [60, 100, 100, 100, 100, 200]
+    assert len(suite.unknown) == 3
+    for case in suite.unknown:
+        assert all(variants.held_out(shape.rows) for shape in case.drawings.shapes)
+    assert [case.name for case in suite.larger] == ["7x6", "12x10"]
+    assert make_suite(task, sizes, task.labels, Aims(), seed=1).unknown == (), (
+        "a model that knows no dash is not asked"
+    )
+
+
+def test_the_papers_recipe_trains_on_one_size_and_is_asked_about_others() -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], RECIPES["paper"].stretch, 20)
+    assert [source["file"] for source in task.sources] == ["digits.toml"]
+    suite = make_suite(task, sizes, task.labels, aims_of(RECIPES["paper"]), seed=1)
+    asked = [case.name for case in suite.sizes]
+    assert asked[:2] == ["digits-3x3.toml, never trained on", "7x6, never trained on"]
+    assert not any(case.aimed for case in suite.sizes)
+
+
+def test_a_model_is_measured_against_what_it_was_trained_for_only() -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
+    suite = make_suite(task, sizes, task.labels, Aims(stretch=1.5, damaged=False), seed=1)
+    aimed = {case.name.split(",")[0]: case.aimed for case in suite.sizes if case.held_out}
+    assert aimed == {"8x5": True, "9x7": True, "11x9": False, "13x10": False, "14x12": False, "20x16": False}
+    assert suite.damaged is not None
+    assert not suite.damaged.aimed
+    assert [case.name for case in suite.larger] == ["7x6"]

@@ -1,0 +1,48 @@
+"""A checkpoint is whole or not at all, and of this run or refused."""
+
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from support.training import trainer
+from tilenca.base.errors import TilencaError, UsageError
+
+
+def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    trainer(seed=1).save(path)
+    with pytest.raises(UsageError, match="made with another seed"):
+        trainer(seed=2).load(path)
+
+
+def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.pt"
+    trainer().save(path)
+    path.write_bytes(path.read_bytes()[:5000])
+    with pytest.raises(UsageError, match="damaged checkpoint"):
+        trainer().load(path)
+
+
+@contextmanager
+def files_end_at(size: int) -> Iterator[None]:
+    """No file of this process grows beyond `size` bytes, as on a disk that is nearly full."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_disk_that_fills_up_leaves_the_checkpoint_before_and_no_half_one(tmp_path: Path) -> None:
+    path, learner = tmp_path / "checkpoint-1.pt", trainer()
+    learner.save(path)
+    before = path.read_bytes()
+    learner.step()
+    with files_end_at(len(before) // 2), pytest.raises(TilencaError, match="File too large"):
+        learner.save(path)
+    assert path.read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["checkpoint-1.pt"]

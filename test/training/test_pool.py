@@ -1,0 +1,39 @@
+"""The grids that training goes on from."""
+
+import numpy as np
+
+from support.training import SMOKE, trainer
+from tilenca.base import paths
+from tilenca.shapes.batch import load_drawings
+from tilenca.training.curriculum import Curriculum
+from tilenca.training.pool import Pools
+
+
+def test_pools_hold_states_of_their_drawings_only() -> None:
+    learner = trainer()
+    for _ in range(30):
+        learner.step()
+    for pool in (learner.pools.perturbed, learner.pools.undisturbed):
+        sizes = learner.drawings.sizes[pool.drawing]
+        for states, size in zip(pool.states, sizes, strict=True):
+            assert not states[size:].any()
+        assert np.abs(pool.states).max() <= 127 / 64
+
+
+def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
+    drawings = load_drawings([paths.DEFAULT_SHAPES])
+    even = Curriculum(drawings, np.full(len(drawings), 1 / len(drawings)), np.ones(len(drawings), np.bool_))
+    pools = Pools(SMOKE, even, 21, np.random.default_rng(1))
+    four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
+    kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])
+    for _ in range(200):
+        pools.perturbed.drawing[0] = four
+        pools.perturbed.states[0] = 0
+        pools.perturbed.states[0, :kept, 3] = 0.25
+        pools.switch(pools.perturbed, 0)
+        if pools.perturbed.drawing[0] == nine:
+            break
+    assert pools.perturbed.drawing[0] == nine
+    assert (pools.perturbed.states[0, :all_of_nine, 3] == 0.25).sum() == kept
+    assert (pools.perturbed.states[0, :all_of_nine, 0] == 1.0).sum() == all_of_nine - kept
+    assert not pools.perturbed.states[0, all_of_nine:].any()

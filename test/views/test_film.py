@@ -1,0 +1,44 @@
+"""A film's pictures: the tiles, their digits and colours."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from support.films import film_of
+from tilenca.shapes.glyphs import GLYPHS, look_of, screen_colour
+from tilenca.simulator.trace import NOTHING, Film
+from tilenca.views import film as pictures
+
+
+@pytest.mark.parametrize("steps", [1, 19, 23, 24, 60, 500])
+def test_a_strip_shows_the_first_and_the_last_step_and_no_more_than_fit(steps: int) -> None:
+    shown = list(pictures.panels_of(steps))
+    assert shown[0] == 0
+    assert shown[-1] == steps
+    assert len(shown) <= pictures.MAX_PANELS
+    assert shown == sorted(set(shown))
+    if steps < pictures.MAX_PANELS:
+        assert len(shown) == steps + 1
+
+
+def test_a_tile_has_the_colour_and_the_segments_of_what_it_shows() -> None:
+    film = film_of("1", steps=1)
+    shown = np.array([[NOTHING, 2, 8, 4, 7]])
+    axes = Figure().add_axes((0, 0, 1, 1))
+    pictures.draw_tiles(axes, Film(film.shape, film.labels, shown, ""), 0)
+    fills = [patch.get_facecolor()[:3] for patch in axes.patches]
+    assert fills[1:] == [pytest.approx(screen_colour(look_of(label, 0).colour)) for label in "2847"]
+    assert len(set(fills)) == 5
+    segments = sum(len(collection.get_paths()) for collection in axes.collections)
+    assert segments == sum(GLYPHS[label].bit_count() for label in "2847")
+
+
+def test_segments_of_a_digit_do_not_overlap_and_stay_in_their_tile() -> None:
+    from matplotlib.path import Path as Outline
+
+    outlines = [Outline(pictures.segment(name)) for name in "abcdefg"]
+    for number, outline in enumerate(outlines):
+        corners = np.asarray(outline.vertices, np.float64)
+        assert corners.min() > 0.1
+        assert corners.max() < 0.9
+        assert not any(outline.intersects_path(other) for other in outlines[:number])

@@ -1,0 +1,73 @@
+"""How training looks, on a terminal and elsewhere."""
+
+import re
+
+import pytest
+
+from support.terminal import stderr_on_terminal
+from tilenca.training.progress import Progress
+from tilenca.views import training
+from tilenca.views.training import LINES, show_training
+
+
+class Clock:
+    """Stands still but for what is added to it."""
+
+    def __init__(self) -> None:
+        self.seconds = 100.0
+
+    def monotonic(self) -> float:
+        return self.seconds
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """The clock that the view goes by."""
+    owned = Clock()
+    monkeypatch.setattr(training, "time", owned)
+    return owned
+
+
+def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with stderr_on_terminal(monkeypatch, width=140) as screen, show_training([5, 6], 400) as tell:
+        tell(Progress(5, 100, 0.25, 0.5, None))
+        clock.seconds += 2.0
+        tell(Progress(5, 200, 0.125, 0.75, (3, 8, 0.0625)))
+    lines = [line for line in re.split(r"[\r\n]+", screen.text) if "seed" in line]
+    last = {line.split()[1]: line for line in lines}
+    assert last.keys() == {"5", "6"}
+    assert "200/400" in last["5"]
+    assert "loss 0.1250  agree 0.750  50/s" in last["5"]
+    assert "targets 3/8, short by 0.062" in last["5"]
+    assert "0/400" in last["6"]
+    assert "loss" not in last["6"], "it has not begun"
+    assert not any("seed 5:" in line for line in lines), "a plain line among the bars"
+    assert capsys.readouterr().out == ""
+
+
+def test_a_rate_is_that_of_this_run_not_of_the_one_it_goes_on_from(
+    clock: Clock, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with show_training([5], 1000) as tell:
+        tell(Progress(5, 600, 1.0, 0.0, None))
+        clock.seconds += 4.0
+        tell(Progress(5, 800, 1.0, 0.0, None))
+    assert capsys.readouterr().err.splitlines()[-1].endswith(" 50/s")
+
+
+def test_without_a_terminal_each_seed_tells_at_most_ten_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    with show_training([5, 6], 1000) as tell:
+        for iteration in range(1, 1001):
+            tell(Progress(5, iteration, 0.5, 0.25, None))
+        tell(Progress(6, 1000, 0.5, 0.25, (8, 8, 0.0)))
+    said = capsys.readouterr()
+    assert said.out == ""
+    lines = said.err.splitlines()
+    assert [line.split()[1:3] for line in lines] == [
+        *(["5:", f"{1000 * part // LINES}/1000"] for part in range(1, LINES + 1)),
+        ["6:", "1000/1000"],
+    ]
+    assert "targets 8/8, short by 0.000" in lines[-1]
+    assert "targets" not in lines[0]
