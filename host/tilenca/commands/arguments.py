@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
+from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
@@ -81,6 +82,17 @@ not_negative = number(0.0)
 count = whole(1)
 share = number(0.0, 1.0)
 seed = whole(0, 2**63 - 1)
+
+
+def add_model_argument(parser: argparse.ArgumentParser) -> None:
+    """The `--model` option of all commands that read a trained model."""
+    parser.add_argument(
+        "--model",
+        type=Path,
+        default=paths.DEFAULT_MODEL,
+        metavar="DIR",
+        help="the model's directory (models/digits)",
+    )
 
 
 def add_port_argument(parser: argparse.ArgumentParser) -> None:

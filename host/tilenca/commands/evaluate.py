@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.base.project import build_remedy, firmware_image, install_remedy
-from tilenca.commands.arguments import count, seed, share, size
+from tilenca.commands.arguments import add_model_argument, count, seed, share, size
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY, validate
@@ -61,13 +61,7 @@ class RunResults:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
-    parser.add_argument(
-        "--model",
-        type=Path,
-        default=paths.DEFAULT_MODEL,
-        metavar="DIR",
-        help="the model's directory (models/digits)",
-    )
+    add_model_argument(parser)
     parser.add_argument(
         "--shapes",
         type=Path,

@@ -4,10 +4,10 @@ import argparse
 import json
 from pathlib import Path
 
-from tilenca.base import paths
 from tilenca.base.errors import TilencaError
 from tilenca.base.project import project
 from tilenca.commands import export_plan
+from tilenca.commands.arguments import add_model_argument
 from tilenca.model import cost, packing
 from tilenca.model.file import Model, load_model
 from tilenca.model.render import check_fits, is_current, render, write_files
@@ -26,9 +26,7 @@ def _sums(model: Model) -> str:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the arguments of `tilenca export`."""
-    parser.add_argument(
-        "--model", type=Path, default=paths.DEFAULT_MODEL, metavar="DIR", help="the trained model"
-    )
+    add_model_argument(parser)
     parser.add_argument(
         "--out",
         type=Path,

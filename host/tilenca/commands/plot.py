@@ -8,7 +8,7 @@ from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import seed, whole
+from tilenca.commands.arguments import add_model_argument, seed, whole
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
@@ -22,13 +22,7 @@ MAX_STEPS = 500
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
-    parser.add_argument(
-        "--model",
-        type=Path,
-        default=paths.DEFAULT_MODEL,
-        metavar="DIR",
-        help="the model's directory (models/digits)",
-    )
+    add_model_argument(parser)
     parser.add_argument(
         "--out",
         type=Path,

@@ -15,7 +15,7 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import count, seed, share, whole
+from tilenca.commands.arguments import add_model_argument, count, seed, share, whole
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
@@ -40,13 +40,7 @@ ALL = "all"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
-    add(
-        "--model",
-        type=Path,
-        default=paths.DEFAULT_MODEL,
-        metavar="DIR",
-        help="the model's directory (models/digits)",
-    )
+    add_model_argument(parser)
     add("--shapes", type=Path, nargs="+", metavar="F", help="shape files (shapes/digits.toml)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
