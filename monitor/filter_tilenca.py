@@ -1,4 +1,4 @@
-"""Lets `pio device monitor` say in words what a tile says; `--raw` or `-f direct` shows the sentences."""
+"""Makes `pio device monitor` show a tile's sentences in words; `--raw` or `-f direct` shows them raw."""
 
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ from tilenca.protocol.line_reader import LineReader  # noqa: E402
 
 
 class Tilenca(DeviceMonitorFilterBase):
-    """One line of words for every sentence; the board test's text as it is, what is damaged as such."""
+    """One line of words for every sentence; the board test's text unchanged; damaged lines marked."""
 
     NAME = "tilenca"
 
@@ -25,7 +25,7 @@ class Tilenca(DeviceMonitorFilterBase):
         self._lines = LineReader()
 
     def rx(self, text: str) -> str:
-        """The words of the sentences that `text` completes; whatever miniterm has made of other bytes."""
+        """The words of the sentences that `text` completes; miniterm may have replaced other bytes."""
         heard = self._lines.feed(text.encode("ascii", "replace"))
         return "".join(
             (said(sentence) if sentence else board_test_text(raw) or f"DAMAGED {printable(raw)}") + "\r\n"

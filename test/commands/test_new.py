@@ -3,12 +3,15 @@
 import configparser
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from support.blocks import blocks
+from support.reader import parse
 from tilenca.base import paths
 from tilenca.cli import main
 from tilenca.commands import new
@@ -72,6 +75,13 @@ def test_its_shapes_are_a_task_and_its_firmware_has_the_digits(made: Path) -> No
     assert load_task(made / "shapes" / "mine.toml").labels == ("L", "t")
     for path, text in render(load_model(paths.DEFAULT_MODEL)).items():
         assert is_current(made / "firmware" / path, text)
+
+
+def test_its_readme_names_commands_that_exist(made: Path) -> None:
+    commands = [command for block in blocks(made / "README.md") for command in block.commands]
+    assert len(commands) > 5
+    for command in commands:
+        parse(shlex.split(command), "README.md")
 
 
 def settings(ini: Path) -> dict[str, dict[str, str]]:

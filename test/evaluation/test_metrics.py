@@ -8,7 +8,8 @@ import pytest
 from support.measurements import row
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
-from tilenca.evaluation.metrics import Target, validate, wilson
+from tilenca.evaluation.evaluator import validate
+from tilenca.evaluation.metrics import Target, wilson
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import load_training_task

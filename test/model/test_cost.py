@@ -80,8 +80,8 @@ def test_what_is_wider_costs_more() -> None:
 def test_the_shortest_period_leaves_head_room() -> None:
     for size in (Dimensions(), Dimensions(37, 64, 64), WIDE):
         period_ms = cost.shortest_period_ms(size)
-        assert cost.estimate(size, 10, period_ms).busy <= 1 - cost.HEAD_ROOM
-        assert cost.estimate(size, 10, period_ms - 1).busy > 1 - cost.HEAD_ROOM
+        assert cost.estimate(size, 10, period_ms).load <= 1 - cost.HEAD_ROOM
+        assert cost.estimate(size, 10, period_ms - 1).load > 1 - cost.HEAD_ROOM
 
 
 def test_no_period_is_shorter_than_its_frames() -> None:

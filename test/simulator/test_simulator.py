@@ -72,7 +72,8 @@ def simulator(
 ) -> Simulator:
     chosen = np.tile(np.arange(len(drawings)), runs)
     random = np.random.default_rng(seed)
-    return Simulator(engine(MODEL), drawings, chosen, conditions, random, fault=fault, threads=threads)
+    conditions = replace(conditions, fault=fault)
+    return Simulator(engine(MODEL), drawings, chosen, conditions, random, threads=threads)
 
 
 def check_against_the_slow_one(rollout: Simulator, steps: int) -> None:
@@ -323,8 +324,8 @@ def test_a_fault_of_tiles_that_are_not_there_is_refused(tiles: list[int]) -> Non
         simulator(Conditions(), Fault("dead", np.array(tiles)))
 
 
-def test_a_run_with_nobody_to_ask_is_refused() -> None:
-    with pytest.raises(ValueError, match="nobody is left to ask"):
+def test_a_run_without_a_tile_that_counts_is_refused() -> None:
+    with pytest.raises(ValueError, match="none is left to count"):
         simulator(Conditions(), Fault("stuck", np.zeros(1, np.int64)), runs=1, drawings=block(1, 1))
 
 

@@ -1,7 +1,7 @@
-"""The life of one run of tiles in plain Python, event by event: what tools/simulator must agree with.
+"""One run of tiles in plain Python, event by event: the reference for tools/simulator.
 
-Written from the description of the schedules, not from the code: times are fractions, messages are kept per
-pair of tiles, nothing is computed for many runs at once.
+It is written from the description of the schedules, not from the code: times are fractions, every pair of
+tiles has its messages, and it computes one run at a time.
 """
 
 from collections.abc import Callable, Iterator
@@ -35,12 +35,12 @@ class SlowRun:
 
     Args:
         setup: of all runs.
-        run: which one.
+        run: the index of this one.
         states: (N, C) states of all runs to start from.
-        seed_state: (C,) what a tile that is switched on starts from.
+        seed_state: (C,) the state of a tile that was just switched on.
         update: the network.
-        message: what a tile tells its neighbours of its state.
-        classes: how many there are.
+        message: turns a state into the message to neighbours.
+        classes: their number.
     """
 
     def __init__(
@@ -66,13 +66,13 @@ class SlowRun:
         self.on = [bool(alive) for alive in setup.alive[begin:end]]
         self.stuck = [False for _ in self.tiles]
         self.shown = [-1 for _ in self.tiles]
-        self.heard: dict[tuple[int, int], NDArray[Any]] = {}  # by (sender, receiver)
-        self.heard_at: dict[tuple[int, int], Fraction] = {}
+        self.received: dict[tuple[int, int], NDArray[Any]] = {}  # by (sender, receiver)
+        self.received_at: dict[tuple[int, int], Fraction] = {}
         self.numbers = split_mix(int(setup.seeds[run]))
         self.now = Fraction(0)
         self.faulty = int(setup.faulty[run] - begin) if setup.faulty[run] >= 0 else None
         self.target = int(setup.target[begin])
-        out = None if setup.fault == "away" else self.faulty  # who was away must be right when back
+        out = None if setup.fault == "away" else self.faulty  # a tile that was away counts when it is back
         self.counted = [tile for tile in self.tiles if self.on[tile] and tile != out]
         if self.faulty is not None and setup.begin == 0:
             if setup.fault == "stuck":
@@ -92,7 +92,7 @@ class SlowRun:
             self.sending = list(self.tiles)
 
     def step(self) -> float:
-        """Lives one step on; the share of tiles that are right then."""
+        """Runs one step; returns the share of tiles that are right after it."""
         if self.setup.clocks:
             until = max(self.now, Fraction(0)) + 1
             while self.now < until:
@@ -116,7 +116,7 @@ class SlowRun:
             self.states[tile] = self.seed_state.copy()
             self.own[tile] = self.message(self.states[tile])
             for other in self.neighbours[tile]:
-                self.heard.pop((other, tile), None)  # type: ignore[arg-type]
+                self.received.pop((other, tile), None)  # type: ignore[arg-type]
             if setup.clocks:
                 self.update_at[tile] = self.now + self.period[tile]
                 self.arrive_at[tile] = None
@@ -141,11 +141,12 @@ class SlowRun:
 
     def _half_step(self) -> None:
         for tile in self.tiles:
-            # A tile that skips its turn still is what its last message said: who heard that has heard it now.
+            # A tile that skips its turn still has the state of its last message: its receivers count as up to
+            # date.
             if self.on[tile] and tile not in self.sending:
                 for other in self.neighbours[tile]:
-                    if other is not None and self.heard_at.get((tile, other)) == self.now - Fraction(1, 2):
-                        self.heard_at[tile, other] = self.now
+                    if other is not None and self.received_at.get((tile, other)) == self.now - Fraction(1, 2):
+                        self.received_at[tile, other] = self.now
         for tile in self.sending:
             if self.on[tile]:
                 self._send(tile)
@@ -170,8 +171,8 @@ class SlowRun:
     def _send(self, tile: int) -> None:
         for other, lost in zip(self.neighbours[tile], self._lost("held"), strict=True):
             if other is not None and not lost:
-                self.heard[tile, other] = self.own[tile]
-                self.heard_at[tile, other] = self.now
+                self.received[tile, other] = self.own[tile]
+                self.received_at[tile, other] = self.now
 
     def _update(self, tile: int) -> None:
         if self.stuck[tile]:
@@ -182,11 +183,11 @@ class SlowRun:
             if other is None or lost or self._silent(other, tile):
                 seen.append(nothing)
             else:
-                seen.append(self.heard.get((other, tile), nothing))
+                seen.append(self.received.get((other, tile), nothing))
         self.states[tile] = self.update(self.states[tile], np.concatenate(seen))
         self.own[tile] = self.message(self.states[tile])
         self.shown[tile] = int(np.argmax(self.states[tile][-self.classes :]))
 
     def _silent(self, sender: int, receiver: int) -> bool:
         tracked = self.setup.fault != "none" or (self.setup.loss > 0 and not self.setup.zeros)
-        return tracked and self.now - self.heard_at.get((sender, receiver), NEVER) > SILENT_PERIODS
+        return tracked and self.now - self.received_at.get((sender, receiver), NEVER) > SILENT_PERIODS

@@ -1,7 +1,7 @@
-"""How fast the emulator is, as ratios measured in one run: python -m bench.emulator [--write FILE].
+"""The emulator's speed, as ratios measured in one run: python -m bench.emulator [--write FILE].
 
-Wall times vary with the machine and with what else it does; so each figure is the best of a few rounds, and
-rounds of what is compared take turns.
+Wall times vary with the machine and its load; so each figure is the best of a few rounds, and the compared
+programs take turns.
 """
 
 import argparse
@@ -70,12 +70,12 @@ def set_up_ms(elf: Path, tiles: int) -> float:
 
 
 def best(figures: Sequence[float]) -> float:
-    """The greatest, since whatever else runs can only slow things down."""
+    """The greatest, since other load can only slow it down."""
     return max(figures)
 
 
 def measure(rounds: int, directory: Path) -> list[tuple[str, str, str]]:
-    """What, the figure, and what it is to be; one row per figure."""
+    """Name, figure and target; one row per figure."""
     busy, idle = compiled("busy", directory), compiled("idle", directory)
     theirs = simavr(directory)
     ours_mhz, their_mhz = [], []

@@ -1,7 +1,7 @@
-"""Measures the monitor: how much of a core it takes, and whether it loses a sentence. bench.fleet.
+"""Measures the monitor's share of a core, and the sentences that it loses: bench.fleet.
 
 Tiles are pseudo-terminals that speak at a steady pace; the monitor is the real command, with a live picture
-and a recording, which is compared with what was said.
+and a recording, which is compared with the sentences sent.
 """
 
 import argparse
@@ -37,7 +37,7 @@ def neighbour(tile: int, side: str, count: int) -> int | None:
 
 
 def sentence(tile: int, number: int, rate: float, count: int) -> bytes:
-    """What a tile says as its `number`-th: in turn its state and one of its sides, now and then its times."""
+    """A tile's sentence with this number: in turn its state and a side, at intervals its times."""
     uptime_ms = round(number * 1000 / rate)
     beside = {side: neighbour(tile, side, count) for side in "NESW"}
     if number % 2 == 0:
@@ -53,7 +53,7 @@ def sentence(tile: int, number: int, rate: float, count: int) -> bytes:
 
 
 def speak(masters: list[int], rate: float, seconds: float) -> tuple[list[int], int]:
-    """Writes `rate` sentences a second to each port; how many each took, and how many found no room."""
+    """Writes `rate` sentences a second to each port; returns the taken of each and the dropped of all."""
     sent, refused = [0] * len(masters), 0
     started_s = time.monotonic()
     for number in range(round(rate * seconds)):
@@ -68,7 +68,7 @@ def speak(masters: list[int], rate: float, seconds: float) -> tuple[list[int], i
 
 
 def watch(count: int, rate: float, seconds: float) -> str:
-    """One line: what the monitor took of a core, and what it lost."""
+    """One line: the monitor's share of a core, and its lost sentences."""
     pairs = [os.openpty() for _ in range(count)]
     for master, slave in pairs:
         tty.setraw(slave)
@@ -105,13 +105,13 @@ def watch(count: int, rate: float, seconds: float) -> str:
 
 
 def _cpu_s(pid: int) -> float:
-    """Processor time of a process so far, its own and the system's for it."""
+    """Processor time of a process so far, in user and system mode."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _drain(screen: int) -> None:
-    """Reads what is drawn, as a terminal does."""
+    """Reads the picture, as a terminal does."""
     with suppress(OSError):  # Linux's way to say that the other end is closed
         while os.read(screen, 65536):
             pass

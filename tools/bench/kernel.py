@@ -49,7 +49,7 @@ class Given:
     states: NDArray[np.int16]
 
     def header(self) -> str:
-        """As C++."""
+        """The cases in C++."""
         return "\n".join(
             [
                 f"static const uint8_t kGiven = {len(self.inputs)};",
@@ -77,7 +77,7 @@ class Cycles:
 def any_model(size: Dimensions, is_16_bit: bool, zeros: bool = False) -> Model:
     """Weights and biases that leave no activation at zero, with sums of 16 or of 24 bits throughout.
 
-    With `zeros`, every other activation is.
+    With `zeros`, every other activation is zero.
     """
     random = np.random.default_rng(0)
     integer: dict[str, NDArray[Any]] = {}
@@ -96,7 +96,7 @@ def any_model(size: Dimensions, is_16_bit: bool, zeros: bool = False) -> Model:
 
 
 def dense(size: Dimensions, zeros: bool = False) -> Given:
-    """One cell, no message of which is zero, or every other one; half of the rest are negative."""
+    """One cell without zero messages, or with every other one zero; half of the rest are negative."""
     random = np.random.default_rng(1)
     sizes = random.integers(1, 128, (1, 5 * size.channels))
     signs = random.choice([-1, 1], sizes.shape)
@@ -105,7 +105,7 @@ def dense(size: Dimensions, zeros: bool = False) -> Given:
 
 
 def trained_cells(model: Model, steps: int) -> Given:
-    """Some cells of the ten digits after so many steps on the clocks of real tiles."""
+    """Some cells of the ten digits after some steps on the clocks of real tiles."""
     drawings = load_drawings([SHAPES / "digits.toml"], labels=model.labels)
     random = np.random.default_rng(2)
     engine = FastEngine(model)

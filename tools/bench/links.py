@@ -1,4 +1,4 @@
-"""What the links do and where a tile's time goes: python -m bench.links FIRMWARE.elf [--write FILE].
+"""The links' losses and a tile's use of time: python -m bench.links FIRMWARE.elf [--write FILE].
 
 Everything is counted on emulated chips, so that the figures are the same on every machine.
 """
@@ -83,7 +83,7 @@ def _counts(array: Array) -> list[int]:
 
 
 def lost(sent: int, received: int) -> str:
-    """The share that never arrived whole, or how many did if that is all."""
+    """The share that never arrived whole, or "all N" if every frame arrived."""
     return f"{(sent - received) / sent:.1%} of {sent:,}" if received < sent else f"0 of {sent:,}"
 
 
@@ -121,7 +121,7 @@ def links_table(seconds: float, pair_seconds: float) -> list[str]:
 
 
 def account_tables(found: profile.Account) -> list[str]:
-    """Where time goes, and the interrupts."""
+    """The use of time, and the interrupts."""
     parts = found.shares | {f"of it, to hear side {side}": part for side, part in found.neighbours.items()}
     rows = [f"| {part} | {share:.2%} | {share * found.period_ms:.2f} |" for part, share in parts.items()]
     each = [

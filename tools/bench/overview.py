@@ -1,4 +1,4 @@
-"""Prints what the firmware costs, how fast it is emulated and simulated: bench.overview FIRMWARE.elf."""
+"""Prints the firmware's costs, and the speed of its emulation and simulation: bench.overview FIRMWARE.elf."""
 
 import argparse
 import sys

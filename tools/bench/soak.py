@@ -1,4 +1,4 @@
-"""Twenty emulated tiles with all their neighbours, as fast as they go: what becomes of the frames.
+"""Counts the frames of twenty emulated tiles with all their neighbours, as fast as they go.
 
 Neighbours' clocks are a whole percent apart, phases are random, every tile computes and talks on USB.
 """
@@ -19,20 +19,20 @@ from tilenca.protocol.settings import settings_block
 from tilenca.shapes.file import Shape
 
 BLOCK = Shape("B", ("####",) * 5, "B")
-# Narrow enough to update every 10 ms though nothing in it is zero; the frames are as long as the digits'.
+# Narrow enough to update every 10 ms without any zeros; the frames are as long as the digits'.
 SMALL = Dimensions(21, 40, 40)
 PERIOD_MS = 10
 PPM_APART = 10_000.0
 SWITCH_ON_S = 0.2
-# A tile that is switched on in the middle of its neighbour's frame hears its end only. Of the sentences on a
-# side the first is kept for comparison that comes after all that.
+# A tile that is switched on in the middle of its neighbour's frame receives only its end. So counts are
+# compared with the first sentence of a side after the start.
 SETTLED_MS = 1000
 SLICE_S = 0.5
 
 
 @dataclass(frozen=True)
 class Frames:
-    """What one or more sides counted.
+    """The counts of one or more sides.
 
     Attributes:
         sent: frames.
@@ -54,7 +54,7 @@ class Frames:
 
     @property
     def damaged(self) -> int:
-        """Frames that came, but not whole; each is seen as one or the other, or both."""
+        """Frames that did not arrive whole; each counts as corrupt, as lost, or as both."""
         return max(self.corrupt, self.lost)
 
 
@@ -62,10 +62,10 @@ COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
 class Ledger:
-    """Takes in what tiles say, and gives account of their links and restarts.
+    """Reads the tiles' sentences, and counts their links' frames and their restarts.
 
     Attributes:
-        hellos: how often each tile, counted from 0, said that it had started.
+        hellos: how often each tile, counted from 0, greeted at a start.
     """
 
     def __init__(self, array: Array) -> None:
@@ -76,7 +76,7 @@ class Ledger:
         self._last: dict[tuple[int, int], LinkSentence] = {}
 
     def listen(self) -> Iterator[tuple[int, Sentence]]:
-        """Everything said since the last call: the tile, from 0, and the sentence."""
+        """The sentences since the last call, each with its tile, counted from 0."""
         for tile in self._array:
             for _, sentence in self._readers[tile.index].feed(tile.read_serial()):
                 if sentence is None:
@@ -90,10 +90,10 @@ class Ledger:
                 yield tile.index, sentence
 
     def frames(self, tile: int, side: int) -> Frames:
-        """What a side counted between its first and its last sentence since the tiles had settled.
+        """The counts of a side between its first and its last sentence after the start.
 
         Raises:
-            KeyError: it has said nothing since then.
+            KeyError: it has sent no sentence since then.
         """
         first, last = self._first[tile, side], self._last[tile, side]
         return Frames(*(getattr(last, name) - getattr(first, name) for name in COUNTERS))
@@ -105,7 +105,7 @@ class Ledger:
 
 @dataclass(frozen=True)
 class Soaked:
-    """What came of it.
+    """The result.
 
     Attributes:
         seconds: of emulated time.
@@ -135,21 +135,21 @@ def small_model() -> Model:
 
 
 def checkerboard(shape: Shape, apart_ppm: float) -> list[float]:
-    """Clock errors so that every two neighbours are exactly so far apart."""
+    """Clock errors that differ by exactly this much between every two neighbours."""
     return [apart_ppm / 2 * (-1) ** (row + column) for row, column in shape.cells]
 
 
 def soak(
     elf: Path, period_ms: int, seconds: float, seed: int = 0, on_slice: Callable[[float], None] | None = None
 ) -> Soaked:
-    """Runs the block of tiles for so long.
+    """Runs the block of tiles.
 
     Args:
         elf: the firmware.
         period_ms: from update to update.
         seconds: of emulated time.
         seed: of the phases.
-        on_slice: called now and then with the seconds done.
+        on_slice: called at intervals with the seconds done.
 
     Raises:
         TilencaError: the image cannot be run, or a tile stopped.

@@ -1,4 +1,4 @@
-"""Prints how fast training is against plain PyTorch: bench.training.
+"""Prints the speed of training relative to plain PyTorch: bench.training.
 
 All run the same batch through the same ticks and give the gradient of the same loss, on one thread; a check
 compares their results. The batch is the paper's: 128 drawings of 5 x 4, half of the tiles in a tick.
@@ -58,7 +58,7 @@ def seconds_of(do: Callable[[], Tensor], net: TileNet) -> float:
 
 
 def ratio(slow: Callable[[], Tensor], fast: Callable[[], Tensor], net: TileNet) -> float:
-    """How many times as long the first takes, the two in turns."""
+    """The time of the first as a multiple of the second's; the two take turns."""
     return float(np.median([seconds_of(slow, net) / seconds_of(fast, net) for _ in range(TURNS)]))
 
 

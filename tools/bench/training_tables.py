@@ -1,8 +1,8 @@
 """Writes the tables of docs/TRAINING.md and the shipped models' cards: bench.training_tables [--check].
 
-Both follow from the models' metrics, and from what an update costs a tile, which changes with the firmware.
-With --measure models are asked again, by their cards' seeds, as after a change of how tiles behave.
-Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
+Both follow from the models' metrics, and from the cost of an update on a tile, which changes with the
+firmware. --measure measures models again, with their cards' seeds, for instance after a change of the tiles'
+behaviour. Each table stands between `<!-- NAME -->` and `<!-- /NAME -->`.
 """
 
 import argparse
@@ -23,7 +23,7 @@ DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
 MODELS = paths.ROOT / "models"
 WIDTHS = ("digits-40", "digits-64", "digits")  # trained by the same recipe
 TASKS = ("hex", "letters", "pentominoes")
-# Of the rows of a width or a task: a short name, and how the row's name ends, with its steps.
+# Rows to show of a width or a task: a short name, the end of the row's name, and its steps.
 ROWS = {
     "5x4 @60": ("the tiles' own clocks", 60),
     "@1000": ("the tiles' own clocks", 1000),
@@ -44,7 +44,7 @@ def metrics_of(model: str) -> dict[str, Any]:
 
 
 def share(model: str, wanted: tuple[str, int], asked_only: bool = False) -> str:
-    """The share of the first row whose name ends so; with `asked_only` of those that have a target."""
+    """The share of the first row whose name ends with this; with `asked_only` only rows with a target."""
     ending, steps = wanted
     for row in metrics_of(model)["rows"]:
         if row["name"].endswith(ending) and row["steps"] == steps and (row["target"] or not asked_only):
@@ -53,7 +53,7 @@ def share(model: str, wanted: tuple[str, int], asked_only: bool = False) -> str:
 
 
 def by_paper(name: str, steps: int) -> str:
-    """The share of the paper's recipe, which was not trained on all that the digits' model was."""
+    """The share of the paper's recipe, which trained on fewer kinds of drawings than the digits' model."""
     drawings = name.removesuffix(", the tiles' own clocks")
     new = f"{drawings}, never trained on"
     return share("paper", (name, steps)) or share("paper", (new, steps))
@@ -77,7 +77,7 @@ def digits() -> Iterator[list[str]]:
 
 
 def compared(models: tuple[str, ...]) -> Iterator[list[str]]:
-    """One line a model: what it costs a tile and how it does."""
+    """One line a model: its cost on a tile, and its scores."""
     names = [
         name
         for name, wanted in ROWS.items()
@@ -124,7 +124,7 @@ def rendered(text: str) -> str:
 
 
 def measure(name: str) -> None:
-    """Asks a shipped model again all that its card shows, and keeps the answers in its metrics."""
+    """Measures a shipped model again for its card, and writes the results into its metrics."""
     metrics, model = metrics_of(name), load_model(MODELS / name)
     words = [sys.executable, "-m", "tilenca.cli", "evaluate", "--suite", "--json"]
     words += ["--model", str(MODELS / name)]
@@ -136,7 +136,7 @@ def measure(name: str) -> None:
 
 
 def documents() -> dict[Path, str]:
-    """What every document should say.
+    """The text that every document should have.
 
     Raises:
         ValueError: see `rendered`.
@@ -153,7 +153,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing, exit 1 where one differs")
     parser.add_argument(
-        "--measure", nargs="+", default=[], metavar="MODEL", help="ask these models again before"
+        "--measure", nargs="+", default=[], metavar="MODEL", help="measure these models again first"
     )
     args = parser.parse_args()
     for name in args.measure:
@@ -162,7 +162,7 @@ def main() -> int:
     for path, text in differ.items():
         if args.check:
             print(
-                f"{path}: differs from what the models' metrics say; run bench.training_tables",
+                f"{path}: differs from the models' metrics; run bench.training_tables",
                 file=sys.stderr,
             )
         else:

@@ -1,1 +1,1 @@
-"""What is measured and checked on the built firmware: budgets, stack, cycles, disassembly."""
+"""Measurements and checks of the built firmware: budgets, stack, cycles, disassembly."""

@@ -20,7 +20,7 @@ BUDGETS = Path(__file__).with_name("budgets.toml")
 
 @dataclass(frozen=True)
 class Finding:
-    """One budget and what became of it."""
+    """One budget and its result."""
 
     name: str
     measured: str
@@ -29,12 +29,12 @@ class Finding:
 
 
 def read_budgets() -> dict[str, Any]:
-    """What budgets.toml says."""
+    """The tables of budgets.toml."""
     return tomllib.loads(BUDGETS.read_text(encoding="utf-8"))
 
 
 def check_sizes(firmware: Firmware, stack_bytes: int, limits: dict[str, int]) -> list[Finding]:
-    """Compares what the image takes of each memory.
+    """Compares the image's use of each memory with its limit.
 
     Args:
         firmware: the image.
@@ -72,7 +72,7 @@ def check_text(firmware: Firmware, text: str) -> Finding:
 
 
 def check_cycles(elf: Path, limit: int) -> Finding:
-    """Whether a tile of an array is done with an update, links and all, in time."""
+    """Whether a tile of an array completes an update, its links included, in time."""
     awake = cost_fit.awake(elf, DEFAULT_PERIOD_MS)
     return Finding("cycles per update", f"{awake:,.0f}", f"{limit:,}", awake <= limit)
 

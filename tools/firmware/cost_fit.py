@@ -1,9 +1,9 @@
-"""Measures what an update costs on the emulated chip, and prints the constants of host/tilenca/model/cost.py.
+"""Measures the cost of an update on the emulated chip; prints the constants of host/tilenca/model/cost.py.
 
     python -m firmware.cost_fit
 
-Builds the firmware with networks of several widths, lets five tiles in a cross run them, and fits how long
-the one in the middle, which has four neighbours, is awake.
+Builds the firmware with networks of several widths, runs each on five tiles in a cross, and fits the time
+that the tile in the middle, which has four neighbours, is awake.
 """
 
 import itertools
@@ -57,7 +57,7 @@ class Probe:
 
     @classmethod
     def of(cls, size: Dimensions, half: bool) -> "Probe":
-        """One without a zero, or one in which half of all is zero."""
+        """A network without zeros, or one in which half of all values are zero."""
         widths = (size.channels, size.hidden1, size.hidden2)
         return cls(size, ((widths[0] + 1) // 2, widths[1] // 2, widths[2] // 2) if half else widths)
 
@@ -69,7 +69,7 @@ class Probe:
         return channels / size.channels, hidden1 / size.hidden1, hidden2 / size.hidden2
 
     def model(self) -> Model:
-        """Its weights: alternating, so that sums stay small but are not proven to, and biases decide."""
+        """Its weights: signs alternate, so that sums stay small without a proof, and biases decide."""
         size = self.size
         channel = np.arange(size.channels)
         half = self.active[0] < size.channels
@@ -87,7 +87,7 @@ class Probe:
 
 
 def environment(**options: Path) -> dict[str, str]:
-    """What PlatformIO is started with, so that it builds something else than platformio.ini says."""
+    """The environment in which PlatformIO builds something else than platformio.ini says."""
     variables = os.environ | {f"PLATFORMIO_{name}": str(value) for name, value in options.items()}
     variables.pop("PLATFORMIO_CORE_DIR", None)
     return variables

@@ -1,4 +1,4 @@
-"""An AVR program as instructions by address, read from what objdump prints."""
+"""An AVR program as instructions by address, parsed from objdump's output."""
 
 import re
 import subprocess
@@ -52,7 +52,7 @@ def disassemble(elf: Path, objdump: str = "avr-objdump") -> str:
 
 
 def parse(listing: str) -> Program:
-    """Reads what `disassemble` wrote."""
+    """Parses the text of `disassemble`."""
     program = Program()
     for line in listing.splitlines():
         if label := _LABEL.match(line):

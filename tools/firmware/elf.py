@@ -1,4 +1,4 @@
-"""What the budgets want to know of an AVR ELF file."""
+"""The facts of an AVR ELF file that the budgets need."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Where a tile's cycles go: sampled on the emulated chip, and told apart by their source files.
+"""A profile of a tile's cycles: sampled on the emulated chip, and sorted by source file.
 
 An image with line numbers is built beside the real one, and is the same to the byte. Interrupts are measured
 one by one, from their entry to the end of their return.
@@ -49,7 +49,7 @@ INTERRUPTS = {
 KERNEL = ("tilenca_blocks", "tilenca_sum")
 
 NETWORK, LOOP = "the network", "main loop, display, button, clock"
-# What a source file's instructions are for; what is in none of these is the main loop.
+# The purpose of each source file's instructions; all other code is the main loop.
 PARTS = {
     NETWORK: ("arithmetic", "network", "cell", "flash", "layer", "layers", "model"),
     "frames: COBS, CRC, counters": ("frame", "link", "crc16"),
@@ -71,7 +71,7 @@ ASLEEP, INTERRUPTED = "asleep", "interrupts"
 
 @dataclass(frozen=True)
 class Interrupt:
-    """How long one interrupt takes, in cycles, and how often it comes."""
+    """The duration of one interrupt, in cycles, and its rate."""
 
     name: str
     per_s: float
@@ -86,12 +86,12 @@ class Interrupt:
 
 @dataclass(frozen=True)
 class Account:
-    """What a second of a tile's time goes into.
+    """The use of a second of a tile's time.
 
     Attributes:
         period_ms: of the updates.
-        shares: part of the time by what it is for, adding up to 1.
-        neighbours: part of the time that hearing a neighbour takes, by its side.
+        shares: part of the time by its purpose, adding up to 1.
+        neighbours: part of the time that receiving from a neighbour takes, by its side.
         worst_ms: the longest computation of an update, and the longest turn of the main loop, by name.
         interrupts: each of those that came.
     """
@@ -117,7 +117,7 @@ def build() -> Path:
 
 
 def running(elf: Path, period_ms: int) -> Array:
-    """Five tiles in a cross, past their start; the one in the middle has four neighbours."""
+    """Five tiles in a cross, after their start; the one in the middle has four neighbours."""
     array = Array(elf, len(CROSS.cells), cables(CROSS), PPM)
     for tile in array:
         tile.write_eeprom(0, settings_block(tile.index + 1, period_ms, 0))
@@ -171,11 +171,11 @@ def _handlers(elf: Path) -> tuple[dict[int, int], set[int]]:
 
 
 def part_of(function: str, place: str) -> str:
-    """What an instruction is for, by its function and `file:line`."""
+    """The purpose of an instruction, by its function and `file:line`."""
     if function.startswith("__vector"):
         return INTERRUPTED
     if function in KERNEL:
-        return NETWORK  # assembly has no line numbers, and passes for the file before it
+        return NETWORK  # assembly has no line numbers, so objdump assigns it to the file before it
     stem = Path(place.rsplit(":", 1)[0]).stem
     for part, stems in PARTS.items():
         if stem in stems:
@@ -184,7 +184,7 @@ def part_of(function: str, place: str) -> str:
 
 
 def shares(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
-    """Samples what the tile in the middle does; sleep is counted, not sampled."""
+    """Samples the tile in the middle; sleep is counted, not sampled."""
     beds = {at for name, at in _instructions(elf) if name == "sleep"}
     seen: Counter[int] = Counter()
     with running(elf, period_ms) as array:
@@ -209,7 +209,7 @@ def shares(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
 
 
 def neighbours(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
-    """The share of its time that a tile spends on hearing a neighbour, by the side."""
+    """The share of its time that a tile spends on receiving from a neighbour, by the side."""
     awake = {}
     for links in ([], *([(0, side, 1, (side + 2) % len(SIDES))] for side in range(len(SIDES)))):
         with Array(elf, 2, links, PPM[:2]) as array:
@@ -225,7 +225,7 @@ def neighbours(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
 
 
 def worst(elf: Path, period_ms: int, seconds: float) -> dict[str, float]:
-    """What the tile in the middle says of its worst moments."""
+    """The longest times that the tile in the middle reports."""
     reader = LineReader()
     with running(elf, period_ms) as array:
         reader.feed(array[MIDDLE].read_serial())

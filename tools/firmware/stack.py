@@ -1,7 +1,7 @@
-"""The deepest stack a program can need, computed from its disassembly.
+"""The deepest stack that a program can need, computed from its disassembly.
 
-Every path from each entry is followed, instruction by instruction, with the number of bytes on the stack. The
-program must not recurse, and calls through pointers must be told: `indirect` names their targets.
+It follows every path from each entry, instruction by instruction, with the number of bytes on the stack. The
+program must not recurse, and the caller must name the targets of calls through pointers: `indirect`.
 """
 
 import re
@@ -9,14 +9,15 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from firmware.disassembly import Instruction, Program
 
-# What a call pushes on a chip with more than 128 KiB of flash, and an interrupt as well.
+# Bytes that a call or an interrupt pushes on a chip with more than 128 KiB of flash.
 RETURN_ADDRESS = 3
 
 _RETURNS = {"ret", "reti"}
 _SKIPS = {"cpse", "sbrc", "sbrs", "sbic", "sbis"}
 _CALLS = {"call", "rcall"}
 _JUMPS = {"jmp", "rjmp"}
-# Immediate arithmetic that moves Y by a known number of bytes, and what leaves its first operand unchanged.
+# Immediate arithmetic that moves Y by a known number of bytes, and instructions that do not change their
+# first operand.
 _MOVE = re.compile(r"r(28|29), 0x([0-9A-Fa-f]+)")
 _MOVES = {"sbiw", "adiw", "subi", "sbci"}
 _LEAVE_FIRST_OPERAND = {"in", "cp", "cpc", "cpi", "cpse", "sbrc", "sbrs", "bst", "tst"}
@@ -28,11 +29,11 @@ _Path = tuple[int, int, int | None]
 
 
 class StackError(Exception):
-    """The program does something whose stack use cannot be computed; the message says what and where."""
+    """The stack use of an instruction cannot be computed; the message names it and its place."""
 
 
 class StackAnalysis:
-    """Answers how deep the stack gets below an address; each function is followed once."""
+    """Computes the depth of the stack below an address; follows each function once."""
 
     def __init__(self, program: Program, indirect: Mapping[str, Iterable[str]] | None = None) -> None:
         self._program = program
@@ -61,7 +62,7 @@ class StackAnalysis:
         deepest = 0
         seen: set[int] = set()
         paths: list[_Path] = [(entry, 0, None)]
-        later: list[_Path] = []  # what switch tables may reach, if nothing else does
+        later: list[_Path] = []  # code that only switch tables may reach
         while paths or later:
             address, used, frame = paths.pop() if paths else later.pop()
             if address in seen:
@@ -91,7 +92,7 @@ class StackAnalysis:
                 start for name, start in self._program.functions.items() if name.startswith(_CONSTRUCTORS)
             ]
         elif instruction.target == 0 and instruction.operands == "0":
-            return 0  # a weak function that the program does not have, which is asked before it is called
+            return 0  # a weak function that the program lacks; its address is checked before the call
         else:
             targets = [_known(instruction)]
         return max((RETURN_ADDRESS + self.depth(target) for target in targets), default=0)
@@ -152,7 +153,7 @@ def _enables_interrupts(program: Program, start: int) -> bool:
 
 
 def _push(instruction: Instruction, used: int, frame: int | None) -> tuple[int, int | None]:
-    """Bytes on the stack after the instruction, and how far Y is below its top (None: unrelated)."""
+    """Bytes on the stack after the instruction, and the distance of Y below its top (None: unrelated)."""
     name, operands = instruction.name, instruction.operands
     if name == "push":
         return used + 1, frame
@@ -177,7 +178,7 @@ def _set_stack_pointer(instruction: Instruction, used: int, frame: int | None) -
     if instruction.operands == "0x3d, r28":
         if frame is not None:
             return used + frame, 0
-        if used == 0:  # the start-up code, which puts the stack where it begins
+        if used == 0:  # the start-up code, which sets the stack pointer
             return 0, 0
     raise StackError(
         f"the stack pointer is set to an unknown value at {instruction.address:#x}: no alloca, please"
@@ -185,7 +186,7 @@ def _set_stack_pointer(instruction: Instruction, used: int, frame: int | None) -
 
 
 def _moved(name: str, register: int, value: int) -> int:
-    """How far an immediate add or subtract moves Y downwards: the low byte by subi, the high one by sbci."""
+    """The bytes by which immediate arithmetic moves Y downwards: subi the low byte, sbci the high one."""
     if name == "sbiw":
         return value
     if name == "adiw":

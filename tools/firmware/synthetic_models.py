@@ -1,4 +1,4 @@
-"""Networks that nobody trained, for tests and measurements."""
+"""Networks without training, for tests and measurements."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -35,6 +35,6 @@ def random_network(size: Dimensions, reach: int, bias: int | None = None, seed: 
 
 
 def uniform_network(size: Dimensions, weight: int, bias: int) -> Model:
-    """All weights alike, and all biases."""
+    """A model with equal weights and equal biases."""
     each = {"w": weight, "b": bias}
     return network(size, {name: np.full(shape, each[name[0]]) for name, shape in size.shapes().items()})

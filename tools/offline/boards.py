@@ -12,7 +12,7 @@ def parse_boards(text: str) -> dict[str, str]:
 
 
 def board_manifest(properties: Mapping[str, str], board: str, cpu: str) -> dict[str, Any]:
-    """What PlatformIO calls a board's JSON file.
+    """The content of PlatformIO's JSON file of a board.
 
     Args:
         properties: all of boards.txt.

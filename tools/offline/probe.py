@@ -1,7 +1,7 @@
 """Exits with 0 if PlatformIO's package registry answers soon: python tools/offline/probe.py [SECONDS].
 
-It asks as PlatformIO itself would, so whatever proxies, mirrors and certificates PlatformIO knows of count
-here too. Without a limit PlatformIO would try for a minute.
+It asks as PlatformIO itself would, so PlatformIO's proxies, mirrors and certificates apply here too. Without
+a limit PlatformIO would try for a minute.
 """
 
 import os
@@ -16,8 +16,8 @@ def registry_answers(limit_s: float) -> bool:
     """Whether the registry has the AVR platform and says so in time.
 
     Args:
-        limit_s: seconds to wait for the network, however it fails. If it never answers, a thread is left
-            behind: leave the process by `os._exit` then.
+        limit_s: seconds to wait for the network. If it never answers, a thread is left behind: leave the
+            process by `os._exit` then.
     """
     from platformio.exception import PlatformioException
     from platformio.registry.client import RegistryClient

@@ -1,7 +1,7 @@
 """Fills a PlatformIO core directory with stand-ins: python -m offline.seed DIRECTORY, with tools on the path.
 
 PlatformIO takes a package for installed when its folder holds a manifest and a `.piopm` whose name, owner and
-version fit what is asked for. So every stand-in is a folder of links to the files of a Debian package, with
+version fit the requirement. So every stand-in is a folder of links to the files of a Debian package, with
 these two beside them. Their versions end in `+debian...` or `+offline`, which PlatformIO ignores when it
 compares and shows when it builds: a log never hides what compiled it.
 """
@@ -39,7 +39,7 @@ ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
 
 
 def ingredients() -> list[str | bytes]:
-    """All that a seeded directory is made of, as far as it can change: this program and Debian's versions."""
+    """The changeable sources of a seeded directory: this program and Debian's versions."""
     sources = sorted(HERE.rglob("*.py"))
     return [*(path.read_bytes() for path in sources), json.dumps(debian_versions())]
 
@@ -120,7 +120,7 @@ class Seeder:
         self.debian = debian_versions()
 
     def seed(self) -> None:
-        """Replaces whatever is in the core directory.
+        """Replaces the content of the core directory.
 
         Raises:
             OSError: it cannot be written, or a file of a Debian package is missing.

@@ -30,7 +30,7 @@ def levels_up_to(level: str) -> list[str]:
 
 
 def main() -> int:
-    """Brings the clone up to the level asked for; returns the exit status."""
+    """Brings the clone up to the wanted level; returns the exit status."""
     parser = argparse.ArgumentParser(
         prog="setup",
         description="Makes this clone ready to use.",

@@ -1,4 +1,4 @@
-"""Running other programs without ever hanging on a question, and remembering what they did."""
+"""Runs other programs so that none can wait for an answer, and remembers which steps are done."""
 
 import hashlib
 import subprocess
@@ -10,11 +10,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class SetupError(Exception):
-    """The set-up cannot go on; the message says what to do. An empty-handed caller prints it and exits."""
+    """The set-up cannot go on; the message names the remedy. The caller prints it and exits."""
 
 
 def say(message: str) -> None:
-    """Tells the user what is being done, on standard error."""
+    """Tells the user the current step, on standard error."""
     print(f"setup: {message}", file=sys.stderr, flush=True)
 
 
@@ -25,7 +25,7 @@ def run(
 
     Args:
         command: the program and its arguments.
-        failure: what it means to the user if it fails, and the remedy.
+        failure: the message to the user if it fails, with the remedy.
         env: the whole environment, if not the present one.
         quiet: whether its output is shown only where it fails.
 
@@ -59,9 +59,9 @@ def digest(parts: Iterable[str | bytes]) -> str:
 
 
 class Stamp:
-    """A small file that says for which content a step was done last.
+    """A small file with the content for which a step was done last.
 
-    It lies inside what the step made, so that deleting the product deletes the memory of it.
+    It lies inside the step's product, so that deleting the product deletes the record too.
     """
 
     def __init__(self, path: Path, key: str) -> None:
@@ -76,10 +76,10 @@ class Stamp:
             return False
 
     def clear(self) -> None:
-        """Forgets the step: to be called before it starts, so that a failure half-way is done again."""
+        """Deletes the record: call it before the step starts, so that a failed step is done again."""
         self._path.unlink(missing_ok=True)
 
     def set(self) -> None:
-        """Remembers that the step is done."""
+        """Records that the step is done."""
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._path.write_text(self._key + "\n", encoding="ascii")

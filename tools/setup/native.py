@@ -1,4 +1,4 @@
-"""What is compiled or installed outside Python: system packages and the C++ libraries."""
+"""The parts outside Python: system packages and the C++ libraries."""
 
 import os
 import re
@@ -21,7 +21,7 @@ def install_system_packages(packages: Sequence[str]) -> None:
     """Installs those of the packages that are missing, by apt.
 
     Raises:
-        SystemExit: they cannot be installed; apt.sh has told the user why and what to do.
+        SystemExit: they cannot be installed; apt.sh has told the user the reason and the remedy.
     """
     if not packages:
         return

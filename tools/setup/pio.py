@@ -15,14 +15,14 @@ LOCAL_INI = ROOT / "platformio.local.ini"
 CORE_DIR = ROOT / seed.CORE_DIR
 PROBE = ROOT / "tools" / "offline" / "probe.py"
 
-# The probe's own limit is on the network alone; this one is for the case that even Python does not come up.
+# The probe's own limit is on the network alone; this one is for the case that even Python does not start.
 PROBE_LIMIT_S = 30
-# Downloading PlatformIO's packages: some 50 MB. Longer than this is no use to anybody.
+# The limit for downloading PlatformIO's packages, some 50 MB.
 OFFICIAL_LIMIT_S = 600
 
 
 def make_ready() -> None:
-    """Leaves PlatformIO able to build, test and upload, whatever the network is like.
+    """Makes PlatformIO able to build, test and upload, with or without a network.
 
     Once seeded, a clone stays seeded until platformio.local.ini is deleted: no question to the network again.
 

@@ -15,7 +15,7 @@ PYTHON = VENV / "bin" / "python"
 CONSTRAINTS = ROOT / "constraints.txt"
 PYPROJECT = ROOT / "pyproject.toml"
 
-# What each level of the set-up needs beyond the package's own dependencies: extras of pyproject.toml.
+# The extras of pyproject.toml that each level of the set-up needs.
 EXTRAS = {
     "demo": ["firmware"],
     "train": ["train"],
@@ -23,7 +23,7 @@ EXTRAS = {
     "check": ["check"],
     "docs": ["docs"],
 }
-# The version is here; an installed package tells the one it was installed with.
+# The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 
 
@@ -71,7 +71,7 @@ def _make_venv() -> None:
 
 
 def refuse_link(venv: Path) -> None:
-    """Does not touch an environment elsewhere: making one here would empty it.
+    """Refuses a link to an environment elsewhere: making one here would empty that.
 
     Raises:
         SetupError: `venv` is a link.

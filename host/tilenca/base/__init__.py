@@ -1,1 +1,1 @@
-"""What every room may use: errors, paths, the project at hand, standard streams, signals, the four sides."""
+"""The base of every room: errors, paths, the current project, standard streams, signals, the four sides."""

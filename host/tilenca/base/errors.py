@@ -1,8 +1,8 @@
 """The failures a user can cause or meet, each with the exit status of the command that met it.
 
-A message is one line: what is wrong, where, and what to do about it. `tilenca.cli` prints it on stderr
-without a traceback, and so it does what the system refuses (a full disk, no memory). All else is a defect of
-this program.
+A message is one line: the fault, the place and the remedy. `tilenca.cli` prints it on stderr without a
+traceback; so it does with refusals of the system (a full disk, no memory). Every other exception is a defect
+of this program.
 """
 
 from tilenca.base import paths
@@ -33,13 +33,13 @@ class BuildError(TilencaError):
 
 
 class InterruptedRunError(TilencaError):
-    """Ctrl-C, and there is more to say than that: how to go on (exit status 130)."""
+    """Ctrl-C, with a message on how to go on (exit status 130)."""
 
     exit_status = 130
 
 
 def image_error(message: str) -> TilencaError:
-    """What is wrong with an image: our own build's is a failed build, a given one's is a usage error.
+    """The error for a bad image: a failed build for our own image, a usage error for a given one.
 
     Args:
         message: the whole message, which begins with the image's path.

@@ -1,4 +1,4 @@
-"""Where the project's files are: the one place that knows a checkout from an installed wheel.
+"""The paths of the project's files. Only this module knows a checkout from an installed wheel.
 
 In a checkout everything is in the tree. A wheel carries the same files in its folder `data`, and the built
 firmware of the shipped digits. A project that `tilenca new` made, found from the working directory upwards,

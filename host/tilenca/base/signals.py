@@ -1,4 +1,4 @@
-"""One policy for all polite ways to end a command: as Ctrl-C does."""
+"""One policy for all polite ways to end a command: each acts like Ctrl-C."""
 
 import signal
 import threading
@@ -11,9 +11,9 @@ SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 
 @contextmanager
 def ending_like_ctrl_c() -> Iterator[None]:
-    """A polite kill and a closed terminal end the block with KeyboardInterrupt, so that it can clean up.
+    """SIGTERM and a closed terminal end the block with KeyboardInterrupt, so that it can clean up.
 
-    A signal that whoever started us ignores (`nohup`) stays ignored.
+    A signal that the parent process ignores (`nohup`) stays ignored.
     """
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -32,7 +32,7 @@ def ending_like_ctrl_c() -> Iterator[None]:
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """An interrupt during the block comes right after it: so that no child is started and not known of."""
+    """An interrupt during the block is delivered right after it, so that every started child is known."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -10,7 +10,7 @@ from tilenca.base.errors import TilencaError
 
 
 def warn(message: str) -> None:
-    """One line of chatter on stderr; nobody's work ends because nobody hears it."""
+    """One line of chatter on stderr; a closed stderr ends no command."""
     try:
         print(message, file=sys.stderr, flush=True)
     except OSError:
@@ -18,7 +18,7 @@ def warn(message: str) -> None:
 
 
 def check_streams() -> None:
-    """What must be there before a command starts: somewhere for its result to go.
+    """Checks, before a command starts, that its result has a place to go.
 
     Raises:
         TilencaError: standard output is closed.
@@ -27,16 +27,16 @@ def check_streams() -> None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - for as long as the process lives
     if sys.stdout is None:
         raise TilencaError("standard output is closed; redirect it to a file or to /dev/null")
-    # A locale without the characters of a name ends no command.
+    # A name with characters that the locale lacks ends no command.
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def finish_streams() -> None:
-    """Writes out what is left in both.
+    """Flushes both.
 
     Raises:
-        TilencaError: the result could not be written. A reader that has gone has seen what it wanted.
+        TilencaError: the result could not be written. A reader that has closed the pipe is no error.
     """
     failed = _flush(sys.stdout)
     _flush(sys.stderr)

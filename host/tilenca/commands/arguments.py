@@ -101,5 +101,5 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
         "--tiles",
         type=Path,
         metavar="F",
-        help=f"which board is which tile (default: {DEFAULT}, if there is one)",
+        help=f"each tile's board and place (default: {DEFAULT}, if there is one)",
     )

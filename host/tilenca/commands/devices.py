@@ -37,14 +37,14 @@ HEADER = ("PORT", "TILE", "PLACE", "USB ID", "BOARD", "FIRMWARE", "WHAT")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add_fleet_arguments(parser)
-    parser.add_argument("--ask", action="store_true", help="ask each tile who it is and what it runs")
+    parser.add_argument("--ask", action="store_true", help="ask each tile for its id and firmware")
     parser.add_argument(
         "--learn",
         action="store_true",
-        help="find out which tile is where, and write it to the file of tiles",
+        help="find each tile's place, and write the file of tiles",
     )
     parser.add_argument(
-        "--blink", action="store_true", help="with --learn: you say where each blinking tile lies"
+        "--blink", action="store_true", help="with --learn: enter the place of each blinking tile"
     )
     parser.add_argument(
         "--assign", action="store_true", help="with --learn: give tiles without an id a free one"
@@ -117,7 +117,7 @@ def _learn(args: argparse.Namespace, present: list[Board]) -> tuple[Learnt, dict
 
 
 def _before(file: Path) -> tuple[list[Place], str]:
-    """What the file says so far, and why it cannot be read, if so."""
+    """The file's entries so far, and the reason if it cannot be read."""
     if not file.exists():
         return [], ""
     try:
@@ -133,7 +133,7 @@ def _aside(file: Path) -> Path:
 
 
 def _put_aside(file: Path, complaint: str) -> None:
-    """Keeps a file that cannot be read, lest what a person wrote is lost."""
+    """Keeps a copy of a file that cannot be read, so that a person's entries are not lost."""
     aside = _aside(file)
     try:
         file.replace(aside)

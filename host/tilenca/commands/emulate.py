@@ -83,7 +83,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=parse_fault,
         default=[],
         metavar="SPEC",
-        help="what goes wrong, where and when, such as loss=0.1 or cut@3-4:2-5; again for more (see "
+        help="a fault with its place and time, such as loss=0.1 or cut@3-4:2-5; again for more (see "
         "docs/EMULATOR.md)",
     )
     add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")

@@ -1,4 +1,4 @@
-"""What `tilenca emulate` does with the shapes it has laid out: run them, watch them, report."""
+"""The runs of `tilenca emulate` after the shapes are laid out: run them, watch them, report."""
 
 import argparse
 import json
@@ -59,7 +59,7 @@ def _result(emulation: Emulation, task: Task, started: float) -> EmulationResult
 def observe(
     emulation: Emulation, args: argparse.Namespace, stopped: Callable[[], bool] = lambda: False
 ) -> Iterator[Callable[[], None]]:
-    """Writes and serves what the options ask for; the caller calls the function after every slice of time.
+    """Opens the outputs of the options; the caller calls the yielded function after every slice of time.
 
     Args:
         emulation: the tiles.

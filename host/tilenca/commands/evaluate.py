@@ -17,7 +17,8 @@ from tilenca.base.project import build_remedy, firmware_image, install_remedy
 from tilenca.commands.arguments import count, seed, share, size
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
-from tilenca.evaluation.metrics import CONVERGED_BY, convergence_times, validate
+from tilenca.evaluation.evaluator import CONVERGED_BY, validate
+from tilenca.evaluation.metrics import convergence_times
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard

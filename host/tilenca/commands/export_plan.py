@@ -84,7 +84,7 @@ def _text(found: cost.Fit) -> str:
         ("SRAM", f"{found.sram_bytes:,} bytes", f"of {cost.SRAM_BYTES:,}, with any network"),
         ("buffers", f"{found.buffer_bytes:,} bytes", f"of {cost.WIDEST_BUFFERS:,}, sized for the widest"),
         ("update", f"{update_ms:.1f} ms", f"{found.update_cycles:,.0f} cycles with four neighbours"),
-        ("busy", f"{found.busy:.0%}", f"of the firmware's period of {found.period_ms} ms"),
+        ("busy", f"{found.load:.0%}", f"of the firmware's period of {found.period_ms} ms"),
         ("period", f"{found.shortest_period_ms} ms", f"at least, so that {cost.HEAD_ROOM:.0%} stay free"),
     )
     head = (

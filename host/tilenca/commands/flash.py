@@ -1,4 +1,4 @@
-"""`tilenca flash`: one firmware image into many boards, side by side; who has it already is left in peace."""
+"""`tilenca flash`: one firmware image into many boards side by side; skips boards that run it already."""
 
 import argparse
 from collections.abc import Sequence
@@ -75,7 +75,7 @@ class _Flashing:
         return ask_all(names, USER, lambda name, answer: self.rows[name].hear(answer), patience_s)
 
     def _ask(self) -> list[str]:
-        """Who does not run this image yet."""
+        """The rows whose tile does not run this image yet."""
         waiting = []
         for name, answer in self._hear(list(self.rows), "asking").items():
             if answer.firmware_id == self.image.firmware_id:
@@ -102,7 +102,7 @@ class _Flashing:
             self.interrupted |= outcome.result == "interrupted"
 
     def _confirm(self, names: Sequence[str]) -> None:
-        """Asks each tile what it runs now: that it was written was read back, whether it runs was not."""
+        """Asks each tile for its firmware: avrdude has verified the written flash, but not that it runs."""
         if self.interrupted:
             return
         for name, answer in self._hear(names, "confirming").items():
@@ -167,14 +167,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _failed(found: Found) -> tuple[list[Board], list[Place]]:
-    """What `--failed` leaves of the fleet."""
+    """The part of the fleet that `--failed` selects."""
     names = failed_boards()
     boards = [board for board in found.boards if board.name in names]
     return boards, [place for place in found.missing if place.board in names]
 
 
 def _only(wanted: set[int], boards: list[Board]) -> list[Board]:
-    """What `--only` leaves of the boards; those are asked whose ids no file says."""
+    """The boards that `--only` selects; asks the boards whose ids no file lists."""
     ids = {board.port.name: board.tile for board in boards}
     unknown = [name for name, tile in ids.items() if tile is None]
     for name, answer in ask_all(unknown, USER).items():
@@ -183,7 +183,7 @@ def _only(wanted: set[int], boards: list[Board]) -> list[Board]:
 
 
 def _image(args: argparse.Namespace) -> Image:
-    """What is to be written, built if need be, and checked before a board is touched."""
+    """The image to write: built if necessary, and checked before a board is touched."""
     if args.hex:
         return check_image(args.hex)
     if paths.PROJECT is not None and not args.no_build:

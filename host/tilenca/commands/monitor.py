@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_fleet_arguments(parser)
     manner = parser.add_mutually_exclusive_group()
     manner.add_argument("--json", action="store_true", help="one JSON object per sentence on stdout")
-    manner.add_argument("--log", action="store_true", help="one line for whatever is new, no picture")
+    manner.add_argument("--log", action="store_true", help="one line per change, no picture")
     manner.add_argument("--table", action="store_true", help="on a terminal: one line per port, no picture")
     parser.add_argument(
         "--seconds",
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     storage = parser.add_mutually_exclusive_group()
     storage.add_argument(
-        "--record", type=Path, metavar="F", help="append all that is heard to F, with its time"
+        "--record", type=Path, metavar="F", help="append all received lines to F, with their times"
     )
     storage.add_argument(
         "--replay",
@@ -155,7 +155,7 @@ def _look_around(args: argparse.Namespace, found: Found, reader: PortReader, gri
     try:
         now = find_boards(args.port, args.tiles)
     except TilencaError:
-        return  # nothing is there now, or somebody is editing the file
+        return  # no board is there now, or the file is being edited
     reader.add([board.port.name for board in now.boards])
     grid.know(now)
 
@@ -182,7 +182,7 @@ def _awaited(args: argparse.Namespace) -> Found:
 def _display(
     args: argparse.Namespace, fleet: Fleet, grid: Grid, stack: ExitStack, player: Player | None = None
 ) -> Display:
-    """JSON if so asked; on a terminal the live picture, with keys for what is replayed; else lines."""
+    """JSON if wanted; on a terminal the live picture, with keys for a recording; else lines."""
     start_s = args.start or 0.0
     if args.json:
         return JsonLines(start_s)
@@ -194,7 +194,7 @@ def _display(
     about = f"replay of {args.replay}" if player else ""
     display = LiveView(fleet, grid, console, args.table, about)
     if player and sys.stdin and is_ours(sys.stdin.fileno()):
-        with held_back():  # whoever takes the terminal is sure to give it back
+        with held_back():  # a view that takes the terminal must give it back
             player.wait = stack.enter_context(Keyboard(sys.stdin.fileno(), sys.stdout.fileno())).wait
         if args.replay.is_file():  # what comes through a pipe comes once
             player.begin_again = display.begin_again

@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 @dataclass
 class SettingRow:
-    """What became of one tile; `hello` is what it said last of itself; without a port it is not connected."""
+    """The result of one tile; `hello` is its last greeting; without a port it is not connected."""
 
     port: str | None
     tile: int | None

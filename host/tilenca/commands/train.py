@@ -8,7 +8,6 @@ import subprocess
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,17 +16,13 @@ from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, seed, whole
+from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
-from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH, Dimensions, checkpoint_path, checkpoints
+from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
-from tilenca.shapes.batch import Drawings, load_training_task
-from tilenca.shapes.file import UNKNOWN
-from tilenca.shapes.sizes import Sizes
-from tilenca.shapes.variants import Known
-from tilenca.training.curriculum import labels_of
 from tilenca.training.device import check_device
-from tilenca.training.recipes import RECIPES, Recipe, aims_of, find_recipe
+from tilenca.training.recipes import RECIPES, aims_of, find_recipe
 
 if TYPE_CHECKING:
     from tilenca.training.results import Result
@@ -46,10 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[paths.DEFAULT_SHAPES],
         metavar="F",
-        help="shape files, one task; the first may say at what other sizes its drawings keep their class "
+        help="shape files, one task; the first may list other sizes at which its drawings keep their class "
         "(shapes/digits.toml)",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the model goes")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the model's folder")
     parser.add_argument(
         "--recipe",
         default="full",
@@ -64,10 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
     )
     parser.add_argument(
-        "--jobs", type=whole(1, 64), metavar="J", help="how many of them at once (one for each processor)"
+        "--jobs", type=whole(1, 64), metavar="J", help="seeds to train at once (one for each processor)"
     )
     parser.add_argument(
-        "--iterations", type=count, metavar="N", help="so many, instead of as many as the recipe says"
+        "--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)"
     )
     parser.add_argument(
         "--state",
@@ -87,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--validation-runs",
         type=count,
         metavar="N",
-        help="runs per drawing when it is measured, instead of as many as the recipe says",
+        help="runs per drawing in the final measurement (as many as the recipe says)",
     )
     parser.add_argument("--resume", action="store_true", help="continue the interrupted run in DIR")
     parser.add_argument(
@@ -96,42 +91,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
 
 
-@dataclass(frozen=True)
-class TrainingPlan:
-    """The training that the arguments ask for.
-
-    Attributes:
-        task: the drawings of the files, with the model's labels.
-        sizes: of the task.
-        recipe: with the arguments' changes.
-        dimensions: of the network.
-        seeds: to train.
-        validation_runs: of each drawing in the final measurement.
-    """
-
-    task: Drawings
-    sizes: Sizes
-    recipe: Recipe
-    dimensions: Dimensions
-    seeds: tuple[int, ...]
-    validation_runs: int
-
-
 def run(args: argparse.Namespace) -> int:
     """Trains, measures, quantises, writes."""
     started = time.monotonic()
-    plan = _plan(args)
+    plan = make_plan(args)
     check_device(args.device)
     fits = cost.check(plan.dimensions, len(plan.task.labels))
-    _check_out(args, plan)
-    _announce(plan, fits)
+    check_out(args, plan)
+    announce(plan, fits)
+    metadata = _metadata(args)  # the commit may change while the training runs
+    jobs = _train(args, plan)
+    try:
+        result = _measured(plan, _best(jobs, args.seed), SUITE_SEED + args.seed, metadata)
+    except KeyboardInterrupt:
+        raise _interrupted(args, "while measuring the trained model") from None
 
-    from tilenca.evaluation.metrics import validate
-    from tilenca.simulator.engine import FastEngine
+    from tilenca.training.results import keep
+
+    where = keep(args.out, result)
+    _draw_history(where, result)
+    for path in checkpoints(args.out):
+        path.unlink()
+    _report(args, where, result.metrics, time.monotonic() - started)
+    return 0
+
+
+def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
+    """Trains all seeds; returns their jobs, whose checkpoints hold the results."""
     from tilenca.simulator.simulator import processors
-    from tilenca.training.results import Result, keep
     from tilenca.training.runner import Job, train_side_by_side
-    from tilenca.training.trainer import Config, model_of
+    from tilenca.training.trainer import Config
     from tilenca.views.training import show_training
 
     configs = [
@@ -142,12 +131,6 @@ def run(args: argparse.Namespace) -> int:
     jobs = [
         Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
     ]
-    metadata = {
-        "command": _command(args),
-        "shapes": [_place(path) for path in args.shapes],
-        "commit": _commit(),
-        "recipe_name": args.recipe,
-    }
     with show_training(plan.seeds, plan.recipe.iterations) as tell:
         try:
             failures = train_side_by_side(jobs, at_once, tell)
@@ -155,24 +138,42 @@ def run(args: argparse.Namespace) -> int:
             raise _interrupted(args, str(error) or "while training") from None
     for failure in failures:
         warn(failure)
-    try:
-        trained = _best(jobs, args.seed)
-        model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
-        # Other runs and other random drawings than those that decided when to stop, and which seed is best.
-        suite_seed = SUITE_SEED + args.seed
-        suite = make_suite(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), suite_seed)
-        metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, warn)
-    except KeyboardInterrupt:
-        raise _interrupted(args, "while measuring the trained model") from None
+    return jobs
+
+
+def _metadata(args: argparse.Namespace) -> dict[str, object]:
+    """The model's origin, as far as its configuration does not tell it."""
+    return {
+        "command": _command(args),
+        "shapes": [_place(path) for path in args.shapes],
+        "commit": _commit(),
+        "recipe_name": args.recipe,
+    }
+
+
+def _measured(
+    plan: TrainingPlan, trained: "Trained", suite_seed: int, metadata: dict[str, object]
+) -> "Result":
+    """The integer model of a training, and its metrics.
+
+    Args:
+        plan: of the training.
+        trained: the best seed.
+        suite_seed: other runs and other random drawings than those that decided when to stop, and which seed
+            is best.
+        metadata: of the model.
+    """
+    from tilenca.evaluation.evaluator import validate
+    from tilenca.simulator.engine import FastEngine
+    from tilenca.training.results import Result
+    from tilenca.training.trainer import model_of
+
+    model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
+    suite = make_suite(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), suite_seed)
+    metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, warn)
     metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
     metrics["best_iteration"] = trained.best_iteration
-    result = Result(model, metrics, trained.history, trained.checks)
-    where = keep(args.out, result)
-    _draw_history(where, result)
-    for path in checkpoints(args.out):
-        path.unlink()
-    _report(args, where, metrics, time.monotonic() - started)
-    return 0
+    return Result(model, metrics, trained.history, trained.checks)
 
 
 def _draw_history(where: Path, result: "Result") -> None:
@@ -185,61 +186,9 @@ def _draw_history(where: Path, result: "Result") -> None:
         plot_history(rows, where / "history.png", columns, title)
 
 
-def _plan(args: argparse.Namespace) -> TrainingPlan:
-    recipe = find_recipe(args.recipe)
-    if args.iterations is not None:
-        recipe = replace(recipe, iterations=args.iterations)
-    hidden = args.hidden or recipe.hidden
-    dimensions = Dimensions(args.state, hidden, hidden)
-    task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
-    labels = labels_of(task, recipe, dimensions.max_classes)
-    seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
-    runs = args.validation_runs or recipe.validation_runs
-    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
-
-
-def _announce(plan: TrainingPlan, fits: cost.Fit) -> None:
-    """Prints the plan, the cost on a tile, and the drawings that look alike when damaged."""
-    warn(str(fits))
-    if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
-        warn(
-            f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
-            "tiles would learn to say that they do not know"
-        )
-    if plan.recipe.damaged:
-        known = Known((shape.label, shape.rows) for shape in plan.task.shapes)
-        doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
-        if doubts:
-            warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
-    warn(
-        f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
-        f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "
-        "a checkpoint"
-    )
-
-
-def _check_out(args: argparse.Namespace, plan: TrainingPlan) -> None:
-    unfinished = bool(checkpoints(args.out))
-    if (args.out / "model.json").exists() and not (args.resume or args.force):
-        raise UsageError(f"{args.out}: holds a model already; give another --out, or --force to replace it")
-    if unfinished and not (args.resume or args.force):
-        raise UsageError(
-            f"{args.out}: holds an unfinished run; add --resume to continue it, --force to start anew"
-        )
-    if args.resume and not any(checkpoint_path(args.out, number).exists() for number in plan.seeds):
-        raise UsageError(f"{args.out}: no checkpoint of this run to resume; train without --resume")
-    try:
-        args.out.mkdir(parents=True, exist_ok=True)
-        probe = args.out / ".write-probe"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise UsageError(f"{args.out}: cannot write there ({error.strerror}); give another --out") from error
-
-
 def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
     """The finished run with the least shortfall."""
-    from tilenca.evaluation.metrics import Evaluator
+    from tilenca.evaluation.evaluator import Evaluator
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.trainer import model_of, trained_at
 

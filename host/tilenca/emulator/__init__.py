@@ -1,6 +1,7 @@
 """Emulated tiles: whole ATmega2560 boards, wired side to side, running a firmware image cycle by cycle.
 
-The work is done by the C++ library that `make setup` builds from tools/emulator; this is its Python face::
+The work is done by the C++ library that `make setup` builds from tools/emulator; this is its Python
+interface::
 
     from tilenca.emulator import EAST, WEST, Array
     from tilenca.base.paths import FIRMWARE_ELF

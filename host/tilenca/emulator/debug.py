@@ -1,4 +1,4 @@
-"""`tilenca emulate --vcd`, `--frames` and `--gdb`: looking closely at tiles of a run."""
+"""`tilenca emulate --vcd`, `--frames` and `--gdb`: details of the tiles of a run."""
 
 import json
 import re
@@ -29,10 +29,10 @@ def _tile(emulation: Emulation, number: str, option: str, given: str) -> int:
 
 @contextmanager
 def waveforms(emulation: Emulation, path: Path | None, pins: Sequence[str]) -> Iterator[Waveforms | None]:
-    """Records chosen pins while the block runs, and writes them to a file when it ends, however it does.
+    """Records chosen pins while the block runs, and writes them to a file however the block ends.
 
     Raises:
-        UsageError: a pin is none, or the file cannot be written.
+        UsageError: there is no such pin, or the file cannot be written.
     """
     if path is None:
         yield None
@@ -57,10 +57,10 @@ def waveforms(emulation: Emulation, path: Path | None, pins: Sequence[str]) -> I
 
 
 class FrameLog:
-    """Writes what passes on each cable: a JSON object for every frame, in order of their ends."""
+    """Writes the traffic of each cable: a JSON object for every frame, in order of their ends."""
 
     def __init__(self, emulation: Emulation, file: TextIO) -> None:
-        """Looks at all cables from now on; a side without USART is read at its cable's other end."""
+        """Watches all cables from now on; a side without USART is read at its cable's other end."""
         self._file = file
         self._taps: list[tuple[int, int, WireTap]] = []
         for cable in emulation.cables:
@@ -125,7 +125,7 @@ def debuggers(
 
 
 def attend(ports: Sequence[GdbPort], stopped: Callable[[], bool]) -> None:
-    """Does what debuggers ask for; returns when all let the tiles go on, or `stopped`."""
+    """Serves the debuggers' requests; returns when all let the tiles go on, or `stopped`."""
     for port in ports:
         port.serve()
     while (halted := [port for port in ports if port.connected and not port.goes]) and not stopped():

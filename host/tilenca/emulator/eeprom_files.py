@@ -1,4 +1,4 @@
-"""A file for the EEPROM of each emulated tile: what tiles remember between two runs."""
+"""A file for the EEPROM of each emulated tile: the settings that tiles keep between two runs."""
 
 from pathlib import Path
 

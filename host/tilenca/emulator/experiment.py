@@ -23,19 +23,19 @@ from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import label_of_glyph
 
 SLICE_S = 0.05
-# How long a firmware may take to say hello; it does so within milliseconds.
+# The longest time until a firmware greets; it usually takes milliseconds.
 HELLO_S = 1.0
-# A tile that needs so much longer than its updates should take will not get there.
+# A tile that takes this much longer than its updates should take will never finish.
 PATIENCE = 1.5
 PATIENCE_S = 3.0
-# The sentence that tells of an update follows the display by less than this, and the next update later.
+# An update's sentence follows the display within this time; the next update comes later.
 TELLING_MS = 5.0
 FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
 @dataclass(frozen=True)
 class EmulationSettings:
-    """How tiles are switched on and for how long they run.
+    """The settings of a run: how tiles are switched on, and for how long they run.
 
     Attributes:
         seconds: run so long; None: until every tile has done `updates` updates.
@@ -72,7 +72,7 @@ class _Voice:
 
 
 def firmware_settings(elf: Path) -> Settings | None:
-    """The settings a firmware has when its EEPROM is empty, asked of one tile; None if it does not say hello.
+    """The settings of a firmware with an empty EEPROM, as one tile reports them; None if it does not greet.
 
     Raises:
         BuildError, UsageError: the image cannot be used or speaks another version of the protocol, or the
@@ -109,12 +109,12 @@ class Emulation:
             shape: what to lay out.
             labels: those of all classes; they tell "5" from "S".
             elf: the firmware image.
-            settings: how to switch it on.
-            defaults: what `firmware_settings` said; with None tiles get no settings and no number.
+            settings: of the run.
+            defaults: the result of `firmware_settings`; with None tiles get no settings and no number.
 
         Raises:
             BuildError, UsageError: the image cannot be used, or the emulator is not built.
-            UsageError: a fault is of a tile or cable that there is not, or an EEPROM file cannot be used.
+            UsageError: a fault names a tile or cable that does not exist, or an EEPROM file cannot be used.
         """
         self.shape, self.labels, self.settings = shape, tuple(labels), settings
         count = len(shape.cells)
@@ -130,7 +130,7 @@ class Emulation:
             self._faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [_Voice() for _ in range(count)]
-        self.hello: HelloSentence | None = None  # what the firmware says of itself, the same from every tile
+        self.hello: HelloSentence | None = None  # the firmware's own greeting, the same from every tile
         for tile in self.array:
             kept = settings.eeprom and load_eeprom(tile, settings.eeprom)
             if self.period_ms is not None and (not kept or settings.period_ms is not None):
@@ -138,7 +138,7 @@ class Emulation:
                 tile.write_eeprom(0, settings_block(tile.index + 1, self.period_ms, updates))
 
     def advance(self, seconds: float) -> list[Heard]:
-        """Runs on and returns what the tiles said, in order of time.
+        """Runs on and returns the tiles' sentences, in order of time.
 
         Raises:
             TilencaError: a tile stopped at a fault.
@@ -147,7 +147,7 @@ class Emulation:
         return self.listen()
 
     def pass_time(self, seconds: float) -> None:
-        """Runs on, and lets happen what goes wrong meanwhile.
+        """Runs on, and injects the faults that fall due.
 
         Raises:
             TilencaError: a tile stopped at a fault of its program.
@@ -157,7 +157,7 @@ class Emulation:
             self.switch_on_s[tile] = self._faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
-        """What the tiles have said since the last call, in order of time; ports are called `tile-01`, ..."""
+        """The tiles' sentences since the last call, in order of time; ports are called `tile-01`, ..."""
         heard = []
         for tile, voice in zip(self.array, self._voices, strict=True):
             for time_s, value in tile.read_serial_timed():
@@ -175,7 +175,7 @@ class Emulation:
             self.hello = heard.sentence
 
     def share_done(self) -> float:
-        """How much of the run is done, 0 to 1; in updates, those of the least advanced tile."""
+        """The done share of the run, 0 to 1; in updates, that of the least advanced tile."""
         if self.settings.seconds is not None:
             return min(self.array.time_s / self.settings.seconds, 1.0)
         done = min(map(self._updates, self._standing()), default=0)
@@ -196,8 +196,8 @@ class Emulation:
             if self.array.time_s > limit_s:
                 slowest = min(self._standing(), key=self._updates, default=0)
                 raise TilencaError(
-                    f"shape '{self.shape.name}': tile {slowest + 1} told of {self._updates(slowest)} updates "
-                    f"in {limit_s:.1f} s, {self.settings.updates} were asked for; give --seconds to run on"
+                    f"shape '{self.shape.name}': tile {slowest + 1} reported {self._updates(slowest)} "
+                    f"updates in {limit_s:.1f} s instead of {self.settings.updates}; give --seconds to run on"
                 )
             left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
             on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))
@@ -209,7 +209,7 @@ class Emulation:
         return self.settings.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
 
     def _standing(self) -> list[int]:
-        """The tiles that have power; no more is asked of the others."""
+        """The tiles that have power; the others do not count."""
         return [tile.index for tile in self.array if tile.powered]
 
     def _updates(self, index: int) -> int:
@@ -235,7 +235,7 @@ class Emulation:
         return bool(standing) and all(self.shown(self.array[i]) == self.shape.label for i in standing)
 
     def agreed_at_s(self) -> float | None:
-        """Time from the last switch-on to when all tiles were right to stay so; None if they are not."""
+        """Time from the last switch-on until all tiles stay right; None if they do not."""
         if not self.all_right:
             return None
         since = []
@@ -251,7 +251,7 @@ class Emulation:
         return max(since) - max(self.switch_on_s)
 
     def agreed_at_update(self) -> int | None:
-        """How many updates the least advanced tile had done when they agreed; None if they do not."""
+        """The updates of the least advanced tile when all agreed; None if they do not."""
         agreed_s = self.agreed_at_s()
         if agreed_s is None:
             return None
@@ -268,7 +268,7 @@ class Emulation:
         return min(done)
 
     def report(self, wall_s: float) -> dict[str, Any]:
-        """What `--json` prints of one shape."""
+        """The JSON document of one shape."""
         agreed_s = self.agreed_at_s()
         return {
             "shape": self.shape.name,

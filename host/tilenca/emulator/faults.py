@@ -1,4 +1,4 @@
-"""`tilenca emulate --fault SPEC`: what goes wrong with which tile or cable, and when.
+"""`tilenca emulate --fault SPEC`: faults of tiles and cables, and their times.
 
 KIND[=VALUE][@WHERE][:FROM[-TO]], times in seconds:
 
@@ -36,7 +36,7 @@ End = tuple[int, int]
 
 @dataclass(frozen=True)
 class FaultSpec:
-    """One `--fault`, taken apart; see the module.
+    """One parsed `--fault`; see the module.
 
     Attributes:
         text: as it was given.
@@ -55,7 +55,7 @@ class FaultSpec:
     to_s: float | None
 
     def refuse(self, fact: str) -> UsageError:
-        """The complaint about this one."""
+        """The error for this one."""
         return _complaint(self.text, fact)
 
 
@@ -74,10 +74,10 @@ def _number(text: str, part: str, fact: str) -> float:
 
 
 def parse(text: str) -> FaultSpec:
-    """Takes a `--fault` apart.
+    """Parses a `--fault`.
 
     Raises:
-        UsageError: it is none; the message says why.
+        UsageError: it is not valid; the message says why.
     """
     match = SHAPE.fullmatch(text)
     kinds = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
@@ -104,10 +104,10 @@ def parse(text: str) -> FaultSpec:
 
 @dataclass
 class Faults:
-    """The faults of one array: knows what to do when, and does it.
+    """The faults of one array: injects each at its time.
 
     Attributes:
-        restarted_s: when each tile that was switched on anew, or reset, was so last.
+        restarted_s: the time of the last reset or switch-on of each tile that had one.
     """
 
     array: Array
@@ -163,7 +163,7 @@ class Faults:
         return lambda: self.array[tile].set_drift(rate)
 
     def run(self, seconds: float) -> list[int]:
-        """Runs the array for a while, and does what falls due.
+        """Runs the array for a while, and injects the faults that fall due.
 
         Returns:
             The tiles that have started anew meanwhile.

@@ -25,13 +25,13 @@ MOST_BYTES = 1024  # of memory in one answer
 
 
 class GdbPort:
-    """Listens for a debugger of one tile and does what it asks."""
+    """Listens for a debugger of one tile and serves its requests."""
 
     def __init__(self, array: Array, tile: EmulatedTile, port: int = 0, host: str = "127.0.0.1") -> None:
-        """Opens the port; 0 takes any that is free.
+        """Opens the port; 0 takes any free one.
 
         Raises:
-            UsageError: the port cannot be had.
+            UsageError: the port cannot be opened.
         """
         self._array, self._tile = array, tile
         self._listener = socket.socket()
@@ -50,7 +50,7 @@ class GdbPort:
 
     @property
     def connected(self) -> bool:
-        """Whether a debugger is there."""
+        """Whether a debugger is connected."""
         return self._connection is not None
 
     @property
@@ -59,10 +59,10 @@ class GdbPort:
         return self._goes
 
     def wait(self, stopped: Callable[[], bool] = lambda: False) -> None:
-        """Waits until a debugger is there.
+        """Waits until a debugger is connected.
 
         Args:
-            stopped: asked now and then; True ends the waiting with KeyboardInterrupt.
+            stopped: called at intervals; True ends the waiting with KeyboardInterrupt.
         """
         while not self.connected:
             if stopped():
@@ -70,7 +70,7 @@ class GdbPort:
             self.serve(timeout_s=WAIT_S)
 
     def serve(self, timeout_s: float = 0.0) -> None:
-        """Does what the debugger has asked for by now, or tells it that the tile has halted.
+        """Serves the debugger's pending requests, or tells it that the tile has halted.
 
         Args:
             timeout_s: how long to wait for it.
@@ -96,7 +96,7 @@ class GdbPort:
         """Runs the array for as long, and serves the debugger meanwhile; halted time does not count.
 
         Raises:
-            TilencaError: a tile stopped at a fault, and no debugger was there to be told.
+            TilencaError: a tile stopped at a fault, and no debugger was connected.
         """
         end_s = self._array.time_s + seconds
         while self._array.time_s < end_s:

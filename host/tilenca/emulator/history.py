@@ -1,4 +1,4 @@
-"""Stepping back in time: snapshots of an array as it runs, and the way from the nearest one."""
+"""Stepping back in time: snapshots of a running array, and a replay from the nearest one."""
 
 from bisect import bisect_right
 
@@ -9,10 +9,10 @@ QUANTUM_S = 16e-6
 
 
 class History:
-    """Runs an array and remembers how it was.
+    """Runs an array and keeps snapshots of it.
 
-    What is done to tiles from outside (buttons, serial bytes, cables) is in the snapshots after it, but it is
-    not done again on the way from one before it.
+    Snapshots contain earlier actions from outside (buttons, serial bytes, cables), but a replay from an
+    earlier snapshot does not repeat them.
 
         history = History(array, every_s=0.1)
         history.run(5.0)
@@ -20,10 +20,10 @@ class History:
     """
 
     def __init__(self, array: Array, every_s: float = 0.1, most: int = 100) -> None:
-        """Remembers the present.
+        """Takes the first snapshot.
 
         Args:
-            array: what to run; use `run` of this object from now on.
+            array: to run; use `run` of this object from now on.
             every_s: emulated seconds between two snapshots.
             most: how many to keep; the oldest go first. Each takes about 15 KB a tile.
         """
@@ -48,10 +48,10 @@ class History:
                 del self._snapshots[: -self._most]
 
     def go_to(self, time_s: float) -> None:
-        """Goes to a moment of the past, or on to one that is to come; later moments are forgotten.
+        """Goes back to a past moment, or forward to a later one; snapshots after it are dropped.
 
         Raises:
-            UsageError: the moment is older than all that is kept.
+            UsageError: the moment is older than every kept snapshot.
         """
         if time_s > self._array.time_s:
             self.run(time_s - self._array.time_s)

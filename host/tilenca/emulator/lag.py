@@ -1,4 +1,4 @@
-"""How far emulated tiles fall behind the wall clock that they are to keep step with."""
+"""The lag of emulated tiles behind the wall clock that they should keep up with."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -8,29 +8,29 @@ from rich.live import Live
 
 from tilenca.base.stdio import warn
 
-# An emulation that cannot keep up gives up the time it lost, rather than stop listening to its ports.
+# An emulation that cannot keep up drops the lost time, so that it goes on listening to its ports.
 MAX_LAG_S = 0.1
-# What is not worth a word.
+# A lag this small is not reported.
 TOLD_S = 0.5
-# How often the terminal is told.
+# The time between two reports on the terminal.
 LIVE_S = 1.0
 
 
 class Lag:
-    """Adds up the time that was given up. Owns no clock."""
+    """Adds up the dropped time. Owns no clock."""
 
     def __init__(self) -> None:
         self.wall_s = self.behind_s = 0.0
 
     def take(self, wall_s: float) -> float:
-        """How long the tiles may live for `wall_s` of the wall clock."""
+        """The emulated time to run for `wall_s` of the wall clock."""
         lived_s = min(wall_s, MAX_LAG_S)
         self.wall_s += wall_s
         self.behind_s += wall_s - lived_s
         return lived_s
 
     def words(self) -> str:
-        """How far behind the tiles are; "" for less than half a second."""
+        """The lag in words; "" for less than half a second."""
         if self.behind_s < TOLD_S:
             return ""
         return (
@@ -41,7 +41,7 @@ class Lag:
 
 @contextmanager
 def told(lag: Lag) -> Iterator[Callable[[], None]]:
-    """Tells the lag at the end and, on a terminal, while it grows; the function is to be called often."""
+    """Reports the lag at the end and, on a terminal, while it grows; call the function often."""
     console = Console(stderr=True)
     live = Live(console=console, auto_refresh=False, transient=True, redirect_stdout=False)
     shown_s = 0.0

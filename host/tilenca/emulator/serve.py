@@ -37,7 +37,7 @@ class ServedTile:
         self._master, slave = os.openpty()
         tty.setraw(slave)
         self._name = os.ttyname(slave)
-        # With our own end closed, the hang-up that poll() reports tells whether anybody has the port open.
+        # With our own end closed, poll() reports a hang-up while no program has the port open.
         os.close(slave)
         os.set_blocking(self._master, False)
         self._is_open = False
@@ -56,11 +56,11 @@ class ServedTile:
             ) from error
 
     def exchange(self) -> bytes:
-        """Passes on what came in either direction since the last call; returns what the tile said."""
+        """Passes on the bytes of both directions since the last call; returns those of the tile."""
         events = dict(self._poll.poll(0)).get(self._master, 0)
         was_open, self._is_open = self._is_open, not events & select.POLLHUP
         if self._is_open and not was_open:
-            self._tile.read_serial()  # said while nobody listened
+            self._tile.read_serial()  # no program has the port open
             if self._reset_on_open:
                 self._tile.reset()
         if was_open and not self._is_open:
@@ -70,7 +70,7 @@ class ServedTile:
                 self._tile.write_serial(os.read(self._master, READ_BYTES))
         said = self._tile.read_serial()
         if said and self._is_open:
-            with suppress(BlockingIOError):  # nobody reads: the bytes are lost, as on USB
+            with suppress(BlockingIOError):  # no program reads: the bytes are lost, as on USB
                 os.write(self._master, said)
         return said
 
@@ -80,11 +80,11 @@ class ServedTile:
         return self._is_open
 
     def is_spoken_to(self) -> bool:
-        """Whether something has come for the tile since, or the port was closed."""
+        """Whether bytes have come for the tile, or the port was closed."""
         return bool(self._poll.poll(0))
 
     def _hang_up(self) -> None:
-        """DTR is down: whoever opens the port sees by HUPCL, as on a real one, that this raises it."""
+        """Sets HUPCL: it tells a program that opens the port that DTR was low, as on a real port."""
         if self._reset_on_open:
             attributes = termios.tcgetattr(self._master)
             attributes[2] |= termios.HUPCL
@@ -138,7 +138,7 @@ def serve(
 
 
 def _lock(directory: Path) -> int:
-    """The directory, ours alone as long as the descriptor is open; the system closes it however we end.
+    """The directory, locked for us while the descriptor is open; the system closes it however we end.
 
     Raises:
         UsageError: another run has it.
@@ -155,7 +155,7 @@ def _lock(directory: Path) -> int:
 
 
 def _sweep(directory: Path) -> None:
-    """Removes what a run that was killed has left: its pseudo-terminals may be somebody else's by now."""
+    """Removes the links of a killed run: its pseudo-terminals may belong to another program by now."""
     for link in directory.glob("tile-*"):
         if link.is_symlink() and link.readlink().parent == PSEUDO_TERMINALS:
             link.unlink()
@@ -179,5 +179,5 @@ def _keep_step(
 
 
 def _remove(directory: Path) -> None:
-    with suppress(OSError):  # somebody else has put something there
+    with suppress(OSError):  # another program has put something there
         directory.rmdir()

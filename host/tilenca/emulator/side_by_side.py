@@ -1,4 +1,4 @@
-"""Runs several emulations at once; they know nothing of each other."""
+"""Runs several independent emulations at once."""
 
 import os
 import threading
@@ -18,7 +18,7 @@ def run_side_by_side(
     """Runs all jobs on a few threads.
 
     Args:
-        run: runs one job; it must raise as soon as it sees the event, which says that the others are stopped.
+        run: runs one job; it must raise soon after the event is set, which stops all jobs.
         jobs: what to run.
 
     Yields:

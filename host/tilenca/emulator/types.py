@@ -1,4 +1,4 @@
-"""What an emulated tile tells of itself."""
+"""The facts that an emulated tile reports."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -7,7 +7,7 @@ SRAM_END = 0x2200
 
 
 class ResetCause(IntEnum):
-    """Why a chip is reset from outside; the bit of MCUSR that tells."""
+    """The cause of a reset from outside; the bit of MCUSR that reports it."""
 
     EXTERNAL = 2
     BROWN_OUT = 4
@@ -20,7 +20,7 @@ class Stack:
     Attributes:
         pointer: the stack pointer.
         deepest: the lowest address the stack has used since the tile was switched on.
-        floor: the lowest it may: the data, and the heap, end below.
+        floor: the lowest address it may use: the data, and the heap, end below.
     """
 
     pointer: int
@@ -29,7 +29,7 @@ class Stack:
 
     @property
     def most_bytes(self) -> int:
-        """How large the stack has been."""
+        """The largest size of the stack so far."""
         return SRAM_END - self.deepest
 
 
@@ -50,7 +50,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class DisplayChange:
-    """A tile's display began to show something else.
+    """A change of a tile's display.
 
     Attributes:
         time_s: seconds since the array began, to 16 us.

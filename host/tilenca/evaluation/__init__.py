@@ -1,1 +1,1 @@
-"""What a model is asked and how well it answers: test suites, metrics, the model card."""
+"""The evaluation of a model: test suites, metrics, the model card."""

@@ -1,4 +1,4 @@
-"""The model card: how a model was made, what it scores, and how to make it again."""
+"""The model card: a model's origin, its scores, and the command that makes it again."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
 
     Args:
         model: the model.
-        metrics: what `tilenca.evaluation.metrics.validate` returned for it.
+        metrics: what `tilenca.evaluation.evaluator.validate` returned for it.
     """
     size, metadata = model.dimensions, model.metadata
     files = ", ".join(f"`{source['file']}`" for source in metadata["sources"])

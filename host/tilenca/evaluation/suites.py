@@ -5,14 +5,15 @@ Training never sees the drawings of a case that is `held_out`: certain sizes and
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from tilenca.shapes import variants
 from tilenca.shapes.batch import Drawings, load_drawings
+from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes, size_name
-from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variants import Known
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
@@ -28,7 +29,7 @@ class Case:
         kind: decides the target, see `tilenca.evaluation.metrics.TARGETS`.
         name: as tables call it.
         drawings: with the model's labels.
-        steps: after how many steps all tiles must agree.
+        steps: the number of steps after which all tiles must agree.
         held_out: whether training never saw these drawings.
         aimed: whether the model was trained for such drawings, so that there is a target to reach.
     """
@@ -92,23 +93,15 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         Case("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
-    known = Known((shape.label, shape.rows) for shape in task.shapes)
-    damaged = [
-        Shape(shape.label, rows, f"{shape.name} less one")
-        for shape in first
-        for rows in known.damaged(shape.label, shape.rows)
-    ]
+    known = known_of(task.shapes)
+    less = damaged(first, known, " less one")
     return Suite(
         drawn,
         tuple(_size_cases(task, first, sizes, sizes.within(task.largest, aims.stretch))),
-        Case("damaged", "one tile missing", task.of(damaged), 60, aimed=aims.damaged) if damaged else None,
+        Case("damaged", "one tile missing", task.of(less), 60, aimed=aims.damaged) if less else None,
         tuple(_unknown_cases(task, first, known, aims, seed)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
     )
-
-
-def _at_size(first: Sequence[Shape], size: Size) -> list[Shape]:
-    return [other for shape in first if (other := shape.stretched(size)) is not None]
 
 
 def _steps(size: Size) -> int:
@@ -117,7 +110,7 @@ def _steps(size: Size) -> int:
 
 
 def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Case]:
-    trained = _distinct(shape for size in aimed.trained for shape in _at_size(first, size))
+    trained = _distinct(shape for size in aimed.trained for shape in at_size(first, size))
     trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
     if trained:
         yield Case("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
@@ -126,15 +119,10 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     for path in sizes.drawn:
         drawings = load_drawings([path], labels=task.labels)
         yield Case("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
-    seen = {shape.rows for shape in task.shapes} | {
-        other.rows
-        for shape in first
-        for size in (*aimed.trained, *aimed.more)
-        for up in (True, False)
-        if (other := shape.stretched(size, up)) is not None
-    }
+    trainable = chain(task.shapes, *at_sizes(first, (*aimed.trained, *aimed.more)))
+    seen = {shape.rows for shape in trainable}
     for size in new:
-        if shapes := [shape for shape in _distinct(_at_size(first, size)) if shape.rows not in seen]:
+        if shapes := [shape for shape in _distinct(at_size(first, size)) if shape.rows not in seen]:
             # The aim is sizes up to half as large again as the trained ones, not more.
             steps = _steps(size)
             yield Case(
@@ -158,7 +146,7 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
     wanted = _larger_sizes(task, sizes)
     for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
         kind = "drawn" if _steps(size) <= SHORT_STEPS else "trained"
-        yield Case(kind, size_name(size), task.of(_at_size(first, size)), _steps(size))
+        yield Case(kind, size_name(size), task.of(at_size(first, size)), _steps(size))
 
 
 def _unknown_cases(
@@ -167,15 +155,12 @@ def _unknown_cases(
     random = np.random.default_rng(seed)
     drawings = [shape.rows for shape in first]
 
-    def fits(rows: Rows) -> bool:
-        return variants.held_out(rows) and not known.is_known(rows)
-
     for name, wanted, draw in (
         ("random drawings", 500, variants.some_grown(drawings, random, least=4)),
         ("halves of drawings", 100, variants.some_halves(drawings, random)),
         ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
     ):
-        if found := variants.draw_until(wanted, draw, fits):
+        if found := draw_unknown(wanted, draw, known, held_out=True):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
             label = f"no class: {name}, never trained on"
             yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)

@@ -1,4 +1,4 @@
-"""avrdude: where it is, how it is called, and what its words mean for whoever holds the board."""
+"""avrdude: finds it, builds its command line, and turns its output into a reason and a remedy."""
 
 import os
 import re
@@ -34,7 +34,7 @@ GONE = "the board went away; connect it and flash it again, its bootloader is in
 
 @dataclass(frozen=True)
 class Avrdude:
-    """The program, and the configuration it needs if that is not where the program looks by itself."""
+    """The program, and its configuration file where the program does not find that by itself."""
 
     program: Path
     config: Path | None = None
@@ -75,14 +75,14 @@ def find_avrdude() -> Avrdude:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a board is: `phase` is connecting, writing or verifying, `share` 0..1 of that phase."""
+    """The progress of a board: `phase` is connecting, writing or verifying, `share` 0..1 of that phase."""
 
     phase: str
     share: float
 
 
 class Output:
-    """Reads what avrdude says: bytes in, progress and finally a reason out.
+    """Parses avrdude's output: bytes in, progress and finally a reason out.
 
     avrdude announces a phase as `Writing | ` and then prints one `#` for every 2 % of it.
     """
@@ -109,28 +109,28 @@ class Output:
         if bar[1] == "Writing":
             self.progress = Progress("writing", share)
         elif self.progress.phase != "connecting":
-            # Before anything was written, what is read is the chip's signature.
+            # Before the first write, avrdude reads the chip's signature.
             self.progress = Progress("verifying", share)
 
     @property
     def text(self) -> str:
-        """All of the output that is kept."""
+        """The kept part of the output."""
         return "\n".join([*self.lines, self._partial])
 
     @property
     def hopeless(self) -> bool:
-        """Whether it can only fail from here: avrdude 7.1 spins for ever on a port it could not open."""
-        # Of whole lines only: the reason stands at their end.
+        """Whether it can only fail now: avrdude 7.1 loops for ever on a port that it could not open."""
+        # Only whole lines: the reason stands at their end.
         return CANNOT_OPEN.search("\n".join(self.lines)) is not None
 
     @property
     def passing(self) -> bool:
-        """Whether what went wrong could go well another time."""
+        """Whether another attempt could succeed."""
         signature = SIGNATURE_LINE.search(self.text)
         return not self.hopeless and (signature is None or signature[1].lower() == SIGNATURE)
 
     def reason(self, port: str) -> str:
-        """One line for the user: what went wrong, and what to do."""
+        """One line for the user: the fault and the remedy."""
         text = self.text
         if self.hopeless:
             return _cannot_open(text, port)
@@ -164,6 +164,6 @@ def _cannot_open(text: str, port: str) -> str:
     if "busy" in text:
         holder = holders([port]).get(port, "another program")
         return f"busy: {holder} has it open; close that, then flash again"
-    # Both versions end the line with the system's word for it: `... port /dev/ttyACM0: Some reason`.
+    # Both versions end the line with the system's reason: `... port /dev/ttyACM0: Some reason`.
     line = next(line for line in text.splitlines() if CANNOT_OPEN.search(line))
     return f"cannot be opened: {line.rpartition(': ')[2]}; is it a serial port?"

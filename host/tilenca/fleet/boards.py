@@ -1,4 +1,4 @@
-"""Boards behind ports: told apart by what stays when they are plugged in again; known from `tiles.toml`."""
+"""Boards behind ports: each has a name that survives replugging and that `tiles.toml` uses."""
 
 import os
 import re
@@ -35,7 +35,7 @@ class Board:
 
     @property
     def tile(self) -> int | None:
-        """Which tile it is according to `tiles.toml`."""
+        """The tile's id in `tiles.toml`."""
         return self.place.tile if self.place else None
 
 
@@ -44,8 +44,8 @@ class Found:
     """The fleet.
 
     Attributes:
-        boards: those that are there, in the order of their ports.
-        missing: what `tiles.toml` lists besides.
+        boards: the connected ones, in the order of their ports.
+        missing: the others that `tiles.toml` lists.
         others: boards on USB that it does not list.
     """
 
@@ -54,14 +54,14 @@ class Found:
     others: list[Board] = field(default_factory=list)
 
     def tell_others(self) -> None:
-        """Says which boards are left alone."""
+        """Warns of the boards that are left out."""
         if self.others:
             names = ", ".join(board.port.name for board in self.others)
             warn(f"left alone, since the file of tiles does not list them: {names}; name them with --port")
 
 
 def board_name(port: Port, shared: Iterable[str]) -> str:
-    """What tells the board from all others; `shared` are the serial numbers that several boards have."""
+    """A name that no other board has; `shared` are the serial numbers that several boards have."""
     if port.serial_number and port.serial_number not in set(shared):
         return f"serial:{port.serial_number}"
     if port.location:
@@ -76,7 +76,7 @@ def shared_serials(ports: Iterable[Port]) -> set[str]:
 
 
 def is_board(port: Port, name: str, shared: Iterable[str] = ()) -> bool:
-    """Whether a board's name is one of this port's; a serial number that several boards share is nobody's."""
+    """Whether a name means the board at this port; a serial number that several boards share never does."""
     kind, _, value = name.partition(":")
     if kind == "port":
         return os.path.realpath(value) == os.path.realpath(port.name)
@@ -90,8 +90,8 @@ def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]
 
     Args:
         ports: those in use.
-        places: what `tiles.toml` says.
-        on_usb: every port on USB, in use or not, so that a board's name does not depend on that.
+        places: the entries of `tiles.toml`.
+        on_usb: every port on USB, in use or not, so that a board's name depends on no other choice.
     """
     shared = shared_serials(on_usb)
     boards = []
@@ -103,7 +103,7 @@ def match(ports: Sequence[Port], places: Sequence[Place], on_usb: Sequence[Port]
 
 
 def names_now(places: Sequence[Place], boards: Sequence[Board], on_usb: Sequence[Port]) -> list[Place]:
-    """The places by the names that `boards` have now; of two names of one board, the first counts."""
+    """The places under the names that `boards` have now; of two names of one board the first counts."""
     shared = shared_serials(on_usb)
     found: dict[str, Place] = {}
     for place in places:
@@ -129,7 +129,7 @@ def load_places(path: Path | None) -> list[Place]:
 
 
 def ports_on_usb() -> list[Port]:
-    """Every port on USB, whatever is behind it."""
+    """Every port on USB, with any device."""
     return [describe(info) for info in serial_ports()]
 
 
@@ -139,14 +139,14 @@ def match_ports(patterns: Sequence[str]) -> list[Board]:
 
 
 def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
-    """The fleet: what `--port` names, else what `tiles.toml` lists, else the Mega 2560s on USB.
+    """The fleet: the ports of `--port`, else the boards of `tiles.toml`, else the Mega 2560s on USB.
 
     Args:
         patterns: of `--port`.
         path: of `--tiles`.
 
     Raises:
-        NoDeviceError: no port that is meant is there, and no file lists a tile.
+        NoDeviceError: none of the ports exists, and no file lists a tile.
         UsageError: the file is wrong.
     """
     places = load_places(path)
@@ -156,7 +156,7 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
     names = [_short(place.board.partition(":")[2]) for place in places if place.board.startswith("port:")]
     paths = {os.path.realpath(name): name for name in names if is_device(name)}
     devices = {device: Port(name, about=nature(device)) for device, name in paths.items()}
-    # What the file lists by its USB socket may be a board whose ids are not known here.
+    # The file may list a board by its USB socket whose USB ids are unknown here.
     listed = [p for p in on_usb if is_mega(p) or any(is_board(p, place.board) for place in places)]
     devices |= {os.path.realpath(port.name): port for port in listed}
     boards = match(sorted(devices.values(), key=lambda port: natural_key(port.name)), places, on_usb)
@@ -167,16 +167,16 @@ def find_boards(patterns: Sequence[str], path: Path | None) -> Found:
 
 
 def _short(name: str) -> str:
-    """A path as it would be named here: from this folder on, if it is in it."""
+    """A path relative to this folder, if it is inside."""
     path = Path(name)
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else name
 
 
 def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
-    """As `find_boards`, but at least one board of the fleet is there.
+    """As `find_boards`, but requires at least one board of the fleet.
 
     Raises:
-        NoDeviceError: none is.
+        NoDeviceError: there is none.
         UsageError: the file is wrong.
     """
     found = find_boards(patterns, path)
@@ -186,7 +186,7 @@ def find_fleet(patterns: Sequence[str], path: Path | None) -> Found:
 
 
 def none_connected(found: Found, path: Path | None) -> NoDeviceError:
-    """The complaint that of the fleet nothing is there."""
+    """The error for a fleet of which no board is connected."""
     listed = tile_count(len(found.missing))
     return NoDeviceError(
         f"of the {listed} that {path or DEFAULT} lists, none is connected; connect it, or give --port"
@@ -194,7 +194,7 @@ def none_connected(found: Found, path: Path | None) -> NoDeviceError:
 
 
 def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | None) -> None:
-    """Says if a tile calls itself otherwise than the file of tiles does."""
+    """Warns if a tile's own id differs from the one in the file of tiles."""
     if listed is not None and hello and hello.tile != listed:
         warn(
             f"{port}: tile {listed} by the file of tiles, but it calls itself {hello.tile}; "
@@ -203,14 +203,14 @@ def tell_contradiction(port: str, listed: int | None, hello: HelloSentence | Non
 
 
 def tell_models(hellos: Mapping[str, HelloSentence]) -> None:
-    """Says which tiles, by their ports, run another model than most: they are as good as not there."""
+    """Warns of the tiles that run another model than most: their neighbours ignore them."""
     counted = Counter(hello.model_id for hello in hellos.values())
     most = max(counted, key=lambda model: counted[model], default=0)
     for port, hello in hellos.items():
         if hello.model_id != most:
             warn(
-                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; they do "
-                f"not hear each other; flash it: tilenca flash --port {port}"
+                f"{port}: tile {hello.tile} runs model {hello.model_id:04X}, most run {most:04X}; these "
+                f"tiles ignore each other; flash it: tilenca flash --port {port}"
             )
 
 
@@ -218,7 +218,7 @@ def tile_numbers(text: str) -> set[int]:
     """The tile ids of a list like `3,7,9-12`.
 
     Raises:
-        UsageError: it is no such list.
+        UsageError: it is not such a list.
     """
     numbers: set[int] = set()
     for part in text.split(","):

@@ -16,7 +16,7 @@ from tilenca.base.stdio import warn
 
 
 def build() -> None:
-    """Builds the project's firmware, as far as it is not up to date; its output is shown only if it fails.
+    """Builds the project's firmware unless it is up to date. Shows the build's output only if it fails.
 
     Raises:
         BuildError: there is no project, PlatformIO is missing, or the build failed.
@@ -33,7 +33,7 @@ def build() -> None:
     building: subprocess.Popen[bytes] | None = None
     try:
         with held_back():
-            # A process group of its own: what the build started ends with it.
+            # A process group of its own: the processes that the build starts end with it.
             building = subprocess.Popen(
                 command,
                 cwd=folder,

@@ -1,4 +1,4 @@
-"""Tells many tiles something at once, and waits until each has done it."""
+"""Sends commands to many tiles at once, and waits until each has acknowledged."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.describe import words
 from tilenca.protocol.sentences import AckSentence, NakSentence
 
-# A tile answers within milliseconds; what is not answered by then was lost on the way, and is said again.
+# A tile answers within milliseconds; a command without an answer by then was lost and is sent again.
 AGAIN_S = 1.0
 ATTEMPTS = 3
 TICK_S = 0.05
@@ -17,7 +17,7 @@ TICK_S = 0.05
 
 @dataclass(frozen=True)
 class Reply:
-    """What became of a command: the fields now in force; else `problem` says why not."""
+    """The result of a command: the fields now in force, or else the `problem`."""
 
     fields: tuple[str, ...] = ()
     problem: str = ""
@@ -29,15 +29,15 @@ def command_all(
     name: str,
     hear: Callable[[Event], None] = lambda event: None,
 ) -> dict[str, Reply]:
-    """Sends each port its command and waits for what the tile says to it.
+    """Sends each port its command and waits for the tile's answer.
 
-    A command is sent again if there is no answer, or it arrived damaged: doing it twice does no harm.
+    A command without an answer, or damaged on the way, is sent again: it does no harm twice.
 
     Args:
-        reader: has the ports open, and the tiles are known to run.
-        orders: what to send to which port.
-        name: the commands' name, to know their answers by.
-        hear: gets all that tiles say meanwhile.
+        reader: with the ports open; the tiles run.
+        orders: the command of each port.
+        name: of the commands; it identifies the answers.
+        hear: called with every event meanwhile.
 
     Returns:
         A reply for each port, in the order of `orders`.
@@ -69,6 +69,6 @@ def _reply(event: Event, name: str) -> Reply | None:
         case AckSentence(_, command, fields) if command == name:
             return Reply(fields)
         case NakSentence(_, reason, command) as refusal if command in (name, ""):
-            # Damaged on the way: it is sent again when its time has come.
+            # Damaged on the way: it is sent again at the next attempt.
             return None if reason in ("CHECKSUM", "LONG") else Reply(problem=f"refused: {words(refusal)}")
     return None

@@ -1,4 +1,4 @@
-"""`tilenca devices --learn`: finds out which tile is behind which port and where it lies."""
+"""`tilenca devices --learn`: finds the tile behind each port, and its place."""
 
 import sys
 import time
@@ -19,18 +19,19 @@ from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.commands import blink_command, set_command
 from tilenca.protocol.constants import MAX_BLINK_S
 from tilenca.protocol.describe import whole_number
+from tilenca.protocol.sentences import HelloSentence
 
 USER = "tilenca devices --learn"
-# Every tile tells of its four sides, one after another, one a period: five periods, and no less than this.
+# A tile reports one of its four sides per period: wait for five periods, and no less than this.
 LISTEN_S = 12.0
-# A tile knows a neighbour's new id from its next frame, which comes within a period; and tells it after that.
+# A tile learns a neighbour's new id from its next frame, within a period, and reports it after that.
 SETTLE_S = 0.5
 TICK_S = 0.1
 
 
 @dataclass(frozen=True)
 class Learnt:
-    """What was found: the places, what each port's tile answered, and how many tiles have no place."""
+    """The places that were found, each port's answer, and how many tiles have no place."""
 
     places: list[Place]
     answers: dict[str, Answer]
@@ -38,14 +39,14 @@ class Learnt:
 
 
 def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[Place] = ()) -> Learnt:
-    """Asks the tiles who they are and who is on which side; where that is not enough, the person.
+    """Asks the tiles for their ids and their neighbours; where that is not enough, asks the person.
 
     Args:
         boards: the boards.
-        blink: let each tile blink and ask the person for its place, whatever tiles say.
+        blink: let each tile blink and ask the person for its place, even if its links tell it.
         assign: give tiles without an id of their own a free one.
-        before: what is known so far, by the boards' names now: of boards that do not answer, neither ids nor
-            places are free.
+        before: the places known so far, by the boards' names now. The ids and places of boards that do not
+            answer are not free.
 
     Raises:
         TilencaError: tiles have no id of their own, or places cannot be found out.
@@ -54,73 +55,91 @@ def learn(boards: Sequence[Board], blink: bool, assign: bool, before: Sequence[P
     fleet = Fleet()
     with PortReader(names, user=USER) as reader:
         answers = ask(reader, names, hear=fleet.take)
-        for name, answer in answers.items():
-            if answer.hello is None:
-                warn(f"{name}: {answer.problem}; left out")
-        said = {name: answer.hello for name, answer in answers.items() if answer.hello}
-        tell_models(said)
-        here = {board.name for board in boards if board.port.name in said}
+        hellos = _greetings(answers)
+        here = {board.name for board in boards if board.port.name in hellos}
         away = [place for place in before if place.board not in here]
-        tiles = _ids(reader, {name: hello.tile for name, hello in said.items()}, assign, away)
+        tiles = _ids(reader, {name: hello.tile for name, hello in hellos.items()}, assign, away)
         if not tiles:
             remedy = (
                 "; flash them first: tilenca flash" if any(map(_lacks_firmware, answers.values())) else ""
             )
             raise TilencaError(f"no tile answers{remedy}")
-        renamed = any(tile != said[name].tile for name, tile in tiles.items())
-        slowest_s = max(said[name].period_ms for name in tiles) / 1000
-        _listen(
-            reader,
-            fleet,
-            set(tiles),
-            SETTLE_S + 2 * slowest_s if renamed else 0.0,
-            max(LISTEN_S, 5 * slowest_s),
-        )
-        cells = _asked(reader, tiles, away) if blink else _heard(tiles, fleet)
+        _hear_links(reader, fleet, tiles, hellos)
+        cells = _places_from_person(reader, tiles, away) if blink else _places_from_links(tiles, fleet)
     by_port = {board.port.name: board.name for board in boards}
     places = [Place(tile, by_port[name], *cells[tile]) for name, tile in tiles.items() if tile in cells]
     return Learnt(places, answers, len(boards) - len(places))
 
 
+def _greetings(answers: Mapping[str, Answer]) -> dict[str, HelloSentence]:
+    """The greetings of the tiles that answered; warns of the others."""
+    for name, answer in answers.items():
+        if answer.hello is None:
+            warn(f"{name}: {answer.problem}; left out")
+    hellos = {name: answer.hello for name, answer in answers.items() if answer.hello}
+    tell_models(hellos)
+    return hellos
+
+
 def _lacks_firmware(answer: Answer) -> bool:
-    """Whether flashing would help: the port could be opened, and nothing that is ours spoke."""
+    """Whether flashing would help: the port could be opened, but no firmware of ours spoke."""
     return answer.problem in (SILENT, BOARD_TEST) or answer.problem.startswith("speaks protocol")
 
 
-def _ids(reader: PortReader, said: dict[str, int], assign: bool, away: Sequence[Place]) -> dict[str, int]:
-    """Each port's tile id; those that have none of their own get one, if they may."""
+def _ids(reader: PortReader, ids: dict[str, int], assign: bool, away: Sequence[Place]) -> dict[str, int]:
+    """Each port's tile id; tiles without one of their own get a free one, if `assign` allows it.
+
+    Args:
+        reader: of the ports.
+        ids: the id that each port's tile has; 0 for none.
+        assign: whether tiles may get ids.
+        away: the places of tiles that do not answer; their ids are not free.
+    """
     tiles: dict[str, int] = {}
-    lacking = []
-    for name, tile in said.items():
-        if tile == 0 or tile in tiles.values():
-            lacking.append(name)
-        else:
+    for name, tile in ids.items():
+        if tile != 0 and tile not in tiles.values():
             tiles[name] = tile
-    if not lacking:
-        return tiles
-    if not assign:
+    lacking = [name for name in ids if name not in tiles]
+    if lacking and not assign:
         them = ", ".join(
-            f"{name} ({f'{said[name]}, as another' if said[name] else 'none'})" for name in lacking
+            f"{name} ({f'{ids[name]}, as another' if ids[name] else 'none'})" for name in lacking
         )
         raise TilencaError(
             f"tiles without an id of their own: {them}; add --assign to give them free ones, or set each "
             "with `tilenca set id N --port PORT`"
         )
     used = {*tiles.values(), *(place.tile for place in away)}
+    tiles |= _assign(reader, lacking, used)
+    return {name: tiles[name] for name in ids if name in tiles}
+
+
+def _assign(reader: PortReader, names: Sequence[str], used: Set[int]) -> dict[str, int]:
+    """Gives tiles the smallest ids that are not used; returns those that were taken."""
     free = (tile for tile in range(1, MAX_TILE_ID + 1) if tile not in used)
-    fresh = dict(zip(lacking, free, strict=False))
+    fresh = dict(zip(names, free, strict=False))
     orders = {name: set_command("id", tile) for name, tile in fresh.items()}
-    for name, reply in command_all(reader, orders, "SET").items():
+    taken = {}
+    for name, reply in command_all(reader, orders, "SET").items() if orders else ():
         if reply.problem:
             warn(f"{name}: {reply.problem}; left out")
         else:
-            tiles[name] = fresh[name]
+            taken[name] = fresh[name]
             warn(f"{name}: its tile is {fresh[name]} now")
-    return {name: tiles[name] for name in said if name in tiles}
+    return taken
+
+
+def _hear_links(
+    reader: PortReader, fleet: Fleet, tiles: Mapping[str, int], hellos: Mapping[str, HelloSentence]
+) -> None:
+    """Waits until the fleet knows the neighbours of all tiles, by the ids that they have now."""
+    renamed = any(tile != hellos[name].tile for name, tile in tiles.items())
+    slowest_s = max(hellos[name].period_ms for name in tiles) / 1000
+    settle_s = SETTLE_S + 2 * slowest_s if renamed else 0.0
+    _listen(reader, fleet, set(tiles), settle_s, max(LISTEN_S, 5 * slowest_s))
 
 
 def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float, patience_s: float) -> None:
-    """Hears every tile tell of all its sides, as it is in `settle_s`: what is said before is forgotten."""
+    """Waits until every tile has told of all its sides; drops what tiles say before `settle_s` is over."""
     settled_s = time.monotonic() + settle_s
     for view in fleet.tiles.values():
         view.links.clear()
@@ -134,27 +153,29 @@ def _listen(reader: PortReader, fleet: Fleet, names: set[str], settle_s: float, 
             return
 
 
-def _heard(tiles: Mapping[str, int], fleet: Fleet) -> dict[int, tuple[int, int]]:
-    """Finds each tile's place from what they say of their neighbours."""
+def _places_from_links(tiles: Mapping[str, int], fleet: Fleet) -> dict[int, tuple[int, int]]:
+    """Finds each tile's place from the neighbours that the tiles report."""
     alone: dict[int, dict[str, tuple[int, str]]] = {tile: {} for tile in tiles.values()}
     found = arrange(alone | neighbours(fleet))
     if found.conflicts:
         raise TilencaError(
-            f"what tiles say of their neighbours does not fit together: {found.conflicts[0]}; "
-            "check the plugs, or add --blink to say yourself where each lies"
+            f"the neighbours that tiles report contradict each other: {found.conflicts[0]}; "
+            "check the plugs, or add --blink to enter each tile's place yourself"
         )
     cells = {tile: cell for tile, cell in found.cells.items() if tile in tiles.values()}
     if len(found.groups) > 1:
         groups = "; ".join(" ".join(map(str, group)) for group in found.groups)
         warn(
-            f"{len(found.groups)} groups of tiles do not touch ({groups}): how they lie to each other is a "
-            "guess; edit the file, or add --blink to say where each lies"
+            f"{len(found.groups)} groups of tiles do not touch ({groups}): their places relative to each "
+            "other are a guess; edit the file, or add --blink to enter each tile's place"
         )
     return cells
 
 
-def _asked(reader: PortReader, tiles: Mapping[str, int], away: Sequence[Place]) -> dict[int, tuple[int, int]]:
-    """Lets one tile after another blink, and takes its place from standard input."""
+def _places_from_person(
+    reader: PortReader, tiles: Mapping[str, int], away: Sequence[Place]
+) -> dict[int, tuple[int, int]]:
+    """Lets one tile after another blink, and reads its place from standard input."""
     taken = {(place.row, place.col) for place in away if place.tile not in tiles.values()}
     cells: dict[int, tuple[int, int]] = {}
     for name, tile in tiles.items():
@@ -162,15 +183,15 @@ def _asked(reader: PortReader, tiles: Mapping[str, int], away: Sequence[Place]) 
         if reply.problem:
             warn(f"{name}: {reply.problem}; left out")
             continue
-        place = _typed(tile, name, taken | set(cells.values()))
+        place = _read_place(tile, name, taken | set(cells.values()))
         command_all(reader, {name: blink_command(0)}, "BLINK")
         if place:
             cells[tile] = place
     return cells
 
 
-def _typed(tile: int, name: str, taken: Set[tuple[int, int]]) -> tuple[int, int] | None:
-    """A place from standard input; None if there is none."""
+def _read_place(tile: int, name: str, taken: Set[tuple[int, int]]) -> tuple[int, int] | None:
+    """Reads a place from standard input; None for an empty line."""
     while True:
         warn(f"tile {tile} ({name}) blinks. Its row and column, such as 0 3 (nothing: leave it out)?")
         words = sys.stdin.readline().replace(",", " ").split()

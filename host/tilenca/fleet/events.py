@@ -1,4 +1,4 @@
-"""The log of what happens in a fleet: what changed, when, and with which tile. Pure: events in, news out."""
+"""The log of a fleet: each change with its time and its tile. Pure: events in, news out."""
 
 import time
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ REMEDY = "flash the one that differs from most (tilenca flash)"
 
 @dataclass(frozen=True)
 class News:
-    """One line of the log; `tile` is None while it is not known, `bad` what a person should look at."""
+    """One line of the log; `tile` is None while unknown, `bad` marks lines that need a person's attention."""
 
     time_s: float
     port: str
@@ -40,7 +40,7 @@ def news_line(news: News, port: str | None = None) -> str:
 
 
 class Reporter:
-    """Watches a fleet and tells what is new with each event."""
+    """Watches a fleet and reports the changes that each event brings."""
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
@@ -138,5 +138,5 @@ def clock_text(time_s: float) -> str:
 
 
 def port_words(news: PortNews) -> str:
-    """What became of a port."""
+    """The news of a port, in words."""
     return "; ".join(filter(None, ("open" if news.is_open else "", news.reason)))

@@ -1,4 +1,4 @@
-"""What became of each board at its last flashing, for `tilenca flash --failed`."""
+"""The boards whose last flashing failed, on disk, for `tilenca flash --failed`."""
 
 import fcntl
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def _file() -> Path:
-    """Where programs keep such things for their user; RuntimeError if the user has no home."""
+    """The user's folder for the state of programs; RuntimeError if the user has no home."""
     home = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
     return Path(home) / "tilenca" / "failed.json"
 
@@ -31,7 +31,7 @@ def _names(text: str) -> set[str]:
 
 
 def remember(done: Mapping[str, bool]) -> None:
-    """Keeps which boards failed; of those that are not in `done`, what was known stays.
+    """Records which boards failed; boards that are not in `done` keep their status.
 
     Args:
         done: whether each board, by name, runs what it should.
@@ -42,6 +42,6 @@ def remember(done: Mapping[str, bool]) -> None:
         with path.with_suffix(".lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another call may end at the same moment
             failed = (failed_boards() | done.keys()) - {name for name, well in done.items() if well}
-            beside = path.with_suffix(".part")  # where there is no room, what was known stays
+            beside = path.with_suffix(".part")  # without room, the recorded status stays
             beside.write_text(json.dumps(sorted(failed), indent=1) + "\n", encoding="utf-8")
             beside.replace(path)

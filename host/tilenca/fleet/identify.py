@@ -1,4 +1,4 @@
-"""Asks many tiles at once who they are and what they run."""
+"""Asks many tiles at once for their ids and firmware."""
 
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -10,13 +10,13 @@ from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.commands import ask_command
 from tilenca.protocol.sentences import HelloSentence, OtherVersionSentence
 
-# A tile that was reset says hello by itself once its bootloader has given up waiting; until then the
-# bootloader takes whatever it is sent for the beginning of a command, and waits for more. So nobody is asked
-# who has not spoken before (a running tile does so every second), or had the time to.
+# After a reset a tile greets by itself as soon as its bootloader stops waiting. Until then the bootloader
+# takes any byte for the beginning of a command and waits for more. So a question goes only to a tile that has
+# spoken (a running tile does every second) or has had the time to.
 BOOT_S = 3.0
-# What comes right after opening may be from before the reset.
+# Bytes right after opening may be from before the reset.
 STALE_S = 0.3
-# How often to ask again, and when to give up on a tile that says nothing.
+# The time between two questions, and the time after which a silent tile is given up.
 AGAIN_S = 1.0
 PATIENCE_S = 7.0
 TICK_S = 0.05
@@ -26,24 +26,24 @@ SILENT = "says nothing"
 
 @dataclass(frozen=True)
 class Answer:
-    """What a tile says of itself; without it `problem` says why there is no answer."""
+    """A tile's greeting, or the `problem` that prevented one."""
 
     hello: HelloSentence | None = None
     problem: str = ""
 
     @property
     def firmware_id(self) -> int | None:
-        """CRC-32 of what is in its flash; None if it does not tell."""
+        """CRC-32 of its flash; None if it does not report one."""
         return self.hello.firmware_id if self.hello else None
 
 
 class _Asked:
-    """One tile while it is asked: `ask_s` is when to ask it next, `end_s` when to give up."""
+    """The questions to one tile: `ask_s` is the time of the next one, `end_s` the time to give up."""
 
     def __init__(self, patience_s: float) -> None:
         self.answer: Answer | None = None
         self.ask_s = self.end_s = float("inf")
-        self._fresh_s = 0.0  # what was said before may be from before a reset
+        self._fresh_s = 0.0  # earlier bytes may be from before a reset
         self._is_asked = False
         self._patience_s = patience_s
 
@@ -57,7 +57,7 @@ class _Asked:
         self._is_asked = True
 
     def take(self, event: Event, now_s: float) -> None:
-        """Adds what was heard from its port."""
+        """Adds an event of its port."""
         if isinstance(event, PortNews):
             if event.is_open:
                 self.begin(now_s, now_s + BOOT_S)
@@ -106,7 +106,7 @@ def ask(
     patience_s: float = PATIENCE_S,
     clock: Callable[[], float] = time.monotonic,
 ) -> dict[str, Answer]:
-    """As `ask_all`, with ports that stay open; `hear` gets all that tiles say meanwhile."""
+    """As `ask_all`, with ports that stay open; `hear` gets every event meanwhile."""
     asked = {name: _Asked(patience_s) for name in names}
     for name in asked.keys() & set(reader.open):
         asked[name].begin(clock(), clock())

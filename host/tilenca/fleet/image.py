@@ -65,17 +65,17 @@ def _record(number: int, line: str) -> tuple[int, int, bytes]:
 
 
 def firmware_id(memory: dict[int, int]) -> int:
-    """What a tile that runs this image calls its firmware: CRC-32 of its flash up to the image's last byte.
+    """The firmware id of a tile that runs this image: CRC-32 of its flash up to the image's last byte.
 
     Args:
-        memory: the image, as `parse_hex` gives it; what it leaves out is erased flash, 0xFF.
+        memory: the image, as `parse_hex` gives it; addresses without a byte are erased flash, 0xFF.
     """
     return binascii.crc32(bytes(memory.get(address, 0xFF) for address in range(max(memory, default=-1) + 1)))
 
 
 @dataclass(frozen=True)
 class Image:
-    """An image that can be written: its file, its number of bytes, and what tiles that run it call it."""
+    """An image that can be written: its file, its number of bytes, and its firmware id."""
 
     path: Path
     size: int

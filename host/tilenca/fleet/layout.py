@@ -1,4 +1,4 @@
-"""Where tiles lie, from what they say of their neighbours. Pure: who is on which side in, cells out."""
+"""The places of tiles, computed from their neighbours. Pure: the neighbour on each side in, cells out."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ Neighbours = Mapping[int, Mapping[str, tuple[int, str]]]
 
 @dataclass(frozen=True)
 class Arrangement:
-    """Where tiles lie.
+    """The places of tiles.
 
     Attributes:
         cells: (row, column) per tile id; rows from the north, columns from the west, from 0.
-        groups: tile ids of each connected group, the largest first; how groups lie to each other is open.
-        conflicts: what does not fit together, for people.
+        groups: tile ids of each connected group, the largest first; the groups' relative places are unknown.
+        conflicts: contradictions between tiles, for people.
     """
 
     cells: dict[int, tuple[int, int]]
@@ -25,7 +25,7 @@ class Arrangement:
 
 
 def arrange(neighbours: Neighbours) -> Arrangement:
-    """Lays out tiles, those included of which only their neighbours tell.
+    """Lays out tiles, including those that only their neighbours report.
 
     Each group lies beside the one before, with an empty column between them.
     """

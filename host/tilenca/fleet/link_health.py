@@ -1,4 +1,4 @@
-"""How well a link does lately: seen before it fails. Pure."""
+"""The recent quality of a link, so that a person sees trouble before the link fails. Pure."""
 
 from collections import deque
 
@@ -6,7 +6,7 @@ from tilenca.protocol.sentences import LinkSentence
 
 # Long enough to count some frames at a tile's slowest usual pace, short enough to notice a loose plug.
 WINDOW_MS = 10_000
-# A link of which this share of the frames arrives is well; below the other it is failing.
+# A link is well from the first share of arrived frames on; below the second it is failing.
 WELL, FAILING = 0.98, 0.9
 
 
@@ -33,7 +33,7 @@ class LinkHealth:
             return None
         first, last = self._reports[0], self._reports[-1]
         arrived = last.received - first.received
-        # A damaged frame leaves a gap in the sequence as one that never came: both are in `lost`.
+        # A damaged frame leaves a gap in the sequence like a missing one: `lost` counts both.
         expected = arrived + last.lost - first.lost
         return arrived / expected if expected > 0 else None
 

@@ -1,4 +1,4 @@
-"""Who works on a port: locks between our own commands, and what other programs have open."""
+"""Exclusive use of ports: locks between our own commands, and a look at other programs' open files."""
 
 import fcntl
 import os
@@ -9,12 +9,12 @@ from pathlib import Path
 from tilenca.base.errors import TilencaError
 from tilenca.fleet.ports import is_pty
 
-# All must lock in the same place, whatever their TMPDIR.
+# All must lock in the same place, so TMPDIR does not count.
 FOLDER = Path("/tmp/tilenca-locks")
 
 
 def holders(names: Iterable[str]) -> dict[str, str]:
-    """Which other program has which port open, as far as /proc shows: `screen (pid 123)`.
+    """The other programs that have ports open, as far as /proc shows: `screen (pid 123)`.
 
     The process at the other end of a pseudo-terminal often keeps this end open as well, lest it hang up
     between two users; being the tile, it does not count.
@@ -51,19 +51,19 @@ def _command(process: Path) -> str:
 
 
 class PortBusyError(Exception):
-    """Somebody else has the port; the message says who."""
+    """Another program has the port; the message names it."""
 
 
 @contextmanager
 def port_lock(name: str, user: str) -> Iterator[int]:
     """Keeps other tilenca commands off a port while the block runs.
 
-    The lock is on a file of its own, not on the port, which one would have to open: that resets a Mega. The
+    The lock is on a file of its own: to lock the port one would have to open it, and that resets a Mega. The
     system frees it when the last process that has the yielded descriptor ends, however it ends.
 
     Args:
         name: the port.
-        user: who to name to others, such as `tilenca monitor`.
+        user: the command's name for others' messages, such as `tilenca monitor`.
 
     Yields:
         The lock's descriptor, for a child process that must keep the port after us.
@@ -85,7 +85,7 @@ def port_lock(name: str, user: str) -> Iterator[int]:
         except BlockingIOError:
             holder = os.pread(descriptor, 200, 0).decode("utf-8", "replace")
             raise PortBusyError(holder or "another tilenca command") from None
-        with suppress(OSError):  # no room for its name: the lock holds all the same
+        with suppress(OSError):  # no room for its name: the lock holds nevertheless
             os.ftruncate(descriptor, 0)
             os.pwrite(descriptor, f"{user} (pid {os.getpid()})".encode(), 0)
         yield descriptor

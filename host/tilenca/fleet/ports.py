@@ -1,6 +1,6 @@
-"""Serial ports behind which a tile may be: found on USB or named by globs, and who holds them.
+"""Serial ports that may have a tile: found on USB or named by globs, and checked for access.
 
-One board is one character device, however many names lead to it, so that no two programs are started on it.
+One board is one character device, even with several names, so that no two programs start on it.
 """
 
 import glob
@@ -21,7 +21,7 @@ from tilenca.base.errors import NoDeviceError, TilencaError
 
 @dataclass(frozen=True)
 class Adapter:
-    """What a pair of USB ids says: `certain` if it can only be a Mega 2560."""
+    """The meaning of a pair of USB ids: `certain` if it can only be a Mega 2560."""
 
     name: str
     certain: bool
@@ -41,7 +41,7 @@ ADAPTERS: dict[tuple[int, int], Adapter] = {
     (0x0403, 0x6015): Adapter("FTDI FT231X adapter", certain=False),
 }
 
-# pyserial stumbles over a board that is pulled while it is being looked at.
+# pyserial raises when a board is unplugged during the listing.
 LOOKS, LOOK_AGAIN_S = 5, 0.1
 
 # The major number of /dev/null, /dev/zero and their like.
@@ -59,8 +59,8 @@ class Port:
         vid: USB vendor id; None for what is not on USB, such as a pseudo-terminal.
         pid: USB product id, likewise.
         serial_number: of the USB adapter; None if it has none. Clones may share one.
-        location: where on USB it is plugged in, as the kernel names it (`1-2.3`); None if it is not on USB.
-        about: what is known of it, for people.
+        location: its USB socket by the kernel's name (`1-2.3`); None if it is not on USB.
+        about: a description for people.
         present: False for a port that was named but is not there.
     """
 
@@ -89,24 +89,24 @@ def serial_ports() -> list[ListPortInfo]:
             return list(comports())
         except TypeError:
             time.sleep(LOOK_AGAIN_S)
-    raise TilencaError("a board on USB does not say what it is; pull its cable and plug it in again")
+    raise TilencaError("a board on USB does not identify itself; pull its cable and plug it in again")
 
 
 def describe(info: ListPortInfo) -> Port:
-    """What pyserial knows of a port, in our terms."""
+    """A port from pyserial's description."""
     adapter = ADAPTERS.get((info.vid, info.pid))
     if adapter is None:
         about = _printable(info.product or info.description or "")
         about = "" if about == "n/a" else about
     else:
         about = adapter.name if adapter.certain else f"{adapter.name}, maybe a Mega 2560"
-    # An empty serial number tells no board from another, nor does a blank one.
+    # Neither an empty nor a blank serial number identifies a board.
     serial_number = _printable((info.serial_number or "").strip()) or None
     return Port(info.device, info.vid, info.pid, serial_number, info.location or None, about)
 
 
 def _printable(text: str) -> str:
-    """What a board says of itself goes to terminals and into files: some say nonsense."""
+    """A board's own description goes to terminals and into files, and some contain control characters."""
     return "".join(character if character.isprintable() else "?" for character in text)
 
 
@@ -125,7 +125,8 @@ def find_ports(patterns: Sequence[str] = ()) -> list[Port]:
     """The ports that `--port` names, or without any the Mega 2560s on USB.
 
     A pattern matches character devices by path (links to them too); a name without wildcards that is not
-    there is returned with `present` False, so that one missing board is told and does not stop the others.
+    there is returned with `present` False, so that one missing board is reported and does not stop the
+    others.
 
     Raises:
         NoDeviceError: nothing was found.
@@ -165,12 +166,12 @@ def _named(patterns: Sequence[str], by_device: dict[str, Port]) -> list[Port]:
 
 
 def nature(device: str) -> str:
-    """What is known, for people, of a device (a resolved path) that is not on USB."""
+    """The description, for people, of a device (a resolved path) that is not on USB."""
     return "pseudo-terminal" if is_pty(device) else ""
 
 
 def is_device(name: str) -> bool:
-    """Whether `name` is a character device now, and not one without anything behind it, such as /dev/null."""
+    """Whether `name` is a character device now, other than /dev/null and its like."""
     try:
         about = Path(name).stat()
     except OSError:
@@ -184,7 +185,7 @@ def is_pty(device: str) -> bool:
 
 
 def denial(name: str) -> str | None:
-    """Why this user may not use a port and what to do about it, or None if they may."""
+    """The reason why this user may not use a port, with the remedy; None if they may."""
     if os.access(name, os.R_OK | os.W_OK):
         return None
     if is_pty(os.path.realpath(name)):

@@ -19,7 +19,7 @@ from tilenca.fleet.avrdude import GONE, NO_REPLY, Avrdude, Output, Progress
 from tilenca.fleet.lock import PortBusyError, holders, port_lock
 from tilenca.fleet.ports import denial, is_device
 
-# How often to see whether a silent board is still there: avrdude does not notice for long.
+# The time between two looks at a silent board: avrdude takes long to notice that it is gone.
 LOOK_AROUND_S = 0.5
 
 # Opening the port again resets the board again. That helps where avrdude came too late for the bootloader,
@@ -31,16 +31,16 @@ PHASES = ("connecting", "writing", "verifying")
 
 @dataclass(frozen=True)
 class ProgramResult:
-    """What became of one board.
+    """The outcome of one board.
 
     Attributes:
         port: its port.
         result: `flashed`, `failed` or `interrupted`.
-        seconds: from the first attempt's start to the last one's end.
-        error: what went wrong and what to do; None if flashed.
-        attempts: how often it was tried.
-        phase: how far the last attempt came.
-        passing: whether the same could go well another time.
+        seconds: from the start of the first attempt to the end of the last.
+        error: the fault and the remedy; None if flashed.
+        attempts: their number.
+        phase: the last one that the last attempt reached.
+        passing: whether another attempt could succeed.
     """
 
     port: str
@@ -53,10 +53,10 @@ class ProgramResult:
 
 
 class Run:
-    """One avrdude at work on one port."""
+    """One avrdude that works on one port."""
 
     def __init__(self, tool: Avrdude, image: Path, port: str, lock: int) -> None:
-        """Starts it; `lock` stays held as long as it lives, even without us."""
+        """Starts it; it holds `lock` as long as it lives, even after this process."""
         self.port = port
         self.output = Output()
         self.started_s = self.moved_s = time.monotonic()
@@ -73,7 +73,7 @@ class Run:
         self.stream = self._process.stderr
 
     def read(self) -> bool:
-        """Reads what there is; False at the end of the output."""
+        """Reads the available output; False at its end."""
         data = os.read(self.stream.fileno(), 4096)
         before = self.output.progress
         self.output.feed(data)
@@ -84,7 +84,7 @@ class Run:
         return bool(data)
 
     def kill(self, reason: str) -> None:
-        """Ends it at once, for a reason that then is the board's error."""
+        """Ends it at once; the reason becomes the board's error."""
         if self._failure is None:
             self._failure = reason
         self._process.kill()
@@ -100,7 +100,7 @@ class Run:
         )
 
     def finish(self) -> ProgramResult:
-        """Waits for the end of the process and says what became of the board."""
+        """Waits for the end of the process; returns the board's outcome."""
         status = self._process.wait()
         self.stream.close()
         seconds = round(time.monotonic() - self.started_s, 2)
@@ -126,8 +126,8 @@ def program_all(
         image: a checked Intel HEX file.
         names: the ports, each another board.
         jobs: how many at a time.
-        timeout_s: how long a board may make no progress before it is given up.
-        report: called with a port and how far it is, and once with its outcome.
+        timeout_s: the longest time without progress before a board is given up.
+        report: called with a port and its progress, and once with its outcome.
 
     Returns:
         One outcome per port, in the order of `names`; on an interrupt, `interrupted` for those not done.
@@ -150,7 +150,7 @@ def program_all(
 
 
 class _Fleet:
-    """The runs now going, and the outcomes so far."""
+    """The current runs, and the outcomes so far."""
 
     def __init__(
         self,
@@ -167,7 +167,7 @@ class _Fleet:
         self._before: dict[str, ProgramResult] = {}
 
     def start(self, name: str) -> None:
-        """Starts on a board, unless it is plain that it would fail."""
+        """Starts on a board, unless it would certainly fail."""
         lock = ExitStack()
         try:
             descriptor = lock.enter_context(port_lock(name, "tilenca flash"))
@@ -222,7 +222,7 @@ class _Fleet:
             self._done(replace(outcome, attempts=attempts))
 
     def pending(self, names: Iterable[str]) -> list[str]:
-        """Those that have no outcome yet, wherever an interrupt found them."""
+        """The boards without an outcome, after an interrupt."""
         return [name for name in names if name not in self.outcomes]
 
     def _done(self, outcome: ProgramResult) -> None:
@@ -230,7 +230,7 @@ class _Fleet:
         self._report(outcome.port, outcome)
 
     def stop(self) -> list[ProgramResult]:
-        """Ends all that still run; returns what had become of them."""
+        """Ends all current runs; returns their outcomes."""
         stopped = []
         for run, lock in self.runs.values():
             run.kill("interrupted")
@@ -244,14 +244,14 @@ class _Fleet:
 
 
 def _both(first: ProgramResult, second: ProgramResult) -> ProgramResult:
-    """What two attempts come to: where both failed, the one that came further says why."""
+    """The outcome of two attempts: if both failed, the one that came further gives the reason."""
     seconds = round(first.seconds + second.seconds, 2)
     further = PHASES.index(first.phase) > PHASES.index(second.phase)
     return replace(first if further and second.result == "failed" else second, seconds=seconds)
 
 
 def _obstacle(name: str) -> str | None:
-    """What would make avrdude fail (or worse, never end) on this port; None if nothing is in the way."""
+    """A reason why avrdude would fail on this port, or never end; None if there is none."""
     if not is_device(name):
         return "not a serial port" if Path(name).exists() else "no such port; is the board connected?"
     if denied := denial(name):

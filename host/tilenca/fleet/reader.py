@@ -23,20 +23,20 @@ WAS_RESET = "opening it has reset the tile"
 
 
 class _OpenPort:
-    """A port that can be read, and what was read of its present line."""
+    """An open port, and the part of its current line that was read."""
 
     def __init__(self, name: str, user: str, holder: str | None) -> None:
-        """Opens it for us alone, unless `holder` has it open; others are told that `user` has it.
+        """Opens it exclusively, unless `holder` has it open; others see that `user` has it.
 
         Raises:
-            PortBusyError: another tilenca command has it, or the holder.
+            PortBusyError: another tilenca command or the holder has it.
             OSError: it cannot be opened (pyserial's errors are OSErrors).
         """
         self.name = name
         self.lines = LineReader()
         self._resources = ExitStack()
         with self._resources:
-            # Of our own commands the lock tells more than their process.
+            # For our own commands the lock tells more than the process.
             self._resources.enter_context(port_lock(name, user))
             if holder:
                 raise PortBusyError(holder)
@@ -59,9 +59,9 @@ class _OpenPort:
 def _keep_dtr(descriptor: int) -> bool:
     """Leaves DTR as it is when the port is closed; returns whether opening it has raised it.
 
-    A Mega resets when DTR rises, and Linux raises it at every opening, whatever the program asks for. What a
-    program can do is not to lower it on leaving: then only the first opening since the cable was connected
-    resets the board. Whether DTR was left up, the flag tells that makes the system lower it.
+    A Mega resets when DTR rises, and Linux raises DTR at every opening. A program can only avoid lowering it
+    when it closes the port: then only the first opening since the cable was connected resets the board.
+    HUPCL, the flag that makes the system lower DTR, shows whether DTR was left high.
     """
     attributes = termios.tcgetattr(descriptor)
     lowers = bool(attributes[2] & termios.HUPCL)
@@ -76,17 +76,17 @@ class PortReader:
     def __init__(
         self, names: Sequence[str], clock: Callable[[], float] = time.time, user: str = "tilenca monitor"
     ) -> None:
-        """Will read the ports at `names`.
+        """Prepares to read the ports at `names`.
 
         Args:
             names: the ports.
             clock: gives the events' times in seconds since 1970.
-            user: who to name to others that want a port.
+            user: the command's name for others that want a port.
         """
         self._clock, self._user = clock, user
         self._selector = selectors.DefaultSelector()
         self._open: dict[str, _OpenPort] = {}
-        self._closed: dict[str, str | None] = dict.fromkeys(names)  # why; None: not tried yet
+        self._closed: dict[str, str | None] = dict.fromkeys(names)  # the reason; None: not tried yet
         self._retry_s = 0.0
 
     def __enter__(self) -> Self:
@@ -114,7 +114,7 @@ class PortReader:
         self._closed |= dict.fromkeys(name for name in names if name not in {*self._open, *self._closed})
 
     def write(self, name: str, data: bytes) -> bool:
-        """Sends something to the tile behind an open port; False if it did not go out."""
+        """Sends bytes to the tile behind an open port; False if they were not written."""
         try:
             self._open[name].write(data)
         except (KeyError, OSError):  # a port that has gone is noticed when it is read
@@ -122,7 +122,7 @@ class PortReader:
         return True
 
     def poll(self, timeout_s: float) -> list[Event]:
-        """Waits at most `timeout_s` for something to happen; returns it."""
+        """Waits at most `timeout_s` for events; returns them."""
         events: list[Event] = []
         if self._closed:
             if time.monotonic() >= self._retry_s:
@@ -149,7 +149,7 @@ class PortReader:
         return events
 
     def _try_open(self, name: str, holder: str | None) -> str | None:
-        """Opens a port; why it cannot be opened, or None."""
+        """Opens a port; returns the reason if it cannot be opened, else None."""
         if not is_device(name):
             return "no such port; waiting for it"
         if reason := denial(name):

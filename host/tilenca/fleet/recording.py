@@ -1,4 +1,4 @@
-"""Telemetry on disk: JSON lines of what was heard, when and where; raw, for readers yet to be written.
+"""Telemetry on disk: JSON lines with time, port and raw bytes, so that later readers can parse them anew.
 
 A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port", "open", "reason"}`.
 """
@@ -23,7 +23,7 @@ ENCODING = "latin-1"
 # No line is so long.
 LONGEST = 1 << 20
 
-# The last moment that all clocks and calendars can name.
+# The last moment that every calendar function accepts.
 LAST_S = 253_402_300_799.0
 
 
@@ -49,8 +49,8 @@ class Recorder:
         """Opens the file, to write it anew (`w`) or to append (`a`).
 
         Raises:
-            UsageError: it cannot be opened, or is no recording or one whose last line was cut off: what is
-                appended could not be read.
+            UsageError: it cannot be opened, is no recording, or its last line is cut off, so that appended
+                lines could not be read.
         """
         self._path = path
         try:
@@ -80,7 +80,7 @@ class Recorder:
         return self
 
     def __exit__(self, *about: object) -> None:
-        with suppress(OSError):  # what could not be written has been told
+        with suppress(OSError):  # the failed write was reported already
             self._file.close()
 
 
@@ -124,7 +124,7 @@ def parse_event(line: str) -> Event:
 
 
 class Choice:
-    """The events of a recording's ports that match patterns, and what it held."""
+    """The events of those ports of a recording that match patterns, and notes on all of it."""
 
     def __init__(self, path: Path, patterns: Sequence[str]) -> None:
         self._path, self._patterns = path, patterns
@@ -151,7 +151,7 @@ class Choice:
         )
 
     def complain(self, start_s: float) -> None:
-        """Says why nothing was shown of it, if so.
+        """Reports why nothing was shown, if so.
 
         Raises:
             NoDeviceError: no port matches.
@@ -176,17 +176,22 @@ def read_recording(path: Path) -> Iterator[Event]:
     """
     try:
         with path.open(encoding="ascii") as file:
-            for number, line in enumerate(file, start=1):
-                try:
-                    yield parse_event(line)
-                except ValueError as error:
-                    if not line.endswith("\n"):
-                        warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
-                        return
-                    raise UsageError(
-                        f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
-                    ) from error
+            yield from _events(path, file)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}; give a file that --record wrote") from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not a recording; give a file that --record wrote") from error
+
+
+def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
+    for number, line in enumerate(lines, start=1):
+        try:
+            event = parse_event(line)
+        except ValueError as error:
+            if line.endswith("\n"):
+                raise UsageError(
+                    f"{path}:{number}: not a recorded event ({error}); give a file that --record wrote"
+                ) from error
+            warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
+            return
+        yield event

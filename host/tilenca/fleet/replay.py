@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterator, Sequence
 
 from tilenca.fleet.state import Event
 
-# An event so near is due: less than this a clock's own rounding may never reach.
+# An event this near is due: the clock's rounding may never reach a smaller difference.
 DUE_S = 1e-3
 STEP_S = 10.0
 FASTEST, SLOWEST = 1024.0, 1 / 16
 KEYS = f"space: pause, left/right: {STEP_S:g} s, up/down: speed, q: quit"
 
 
-def nobody_types(seconds: float) -> Sequence[str]:
+def no_keys(seconds: float) -> Sequence[str]:
     """Waits where there is no keyboard."""
     time.sleep(seconds)
     return ()
@@ -21,8 +21,8 @@ def nobody_types(seconds: float) -> Sequence[str]:
 class Player:
     """A recording being played; iterate over it once.
 
-    It yields the recording's time now in seconds since 1970 and the events that are due, at least every
-    `tick_s`. What was before the place where it starts, or to which it is moved, is played at once.
+    It yields the recording's current time in seconds since 1970 and the events that are due, at least every
+    `tick_s`. Events before the start, or before the place that it is moved to, are played at once.
     """
 
     def __init__(
@@ -33,30 +33,30 @@ class Player:
         start_s: float = 0.0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Will play what `read` gives, `speed` times as fast (0: without any wait), from `start_s` on."""
+        """Prepares to play the events of `read` from `start_s` on, at `speed` (0: without waits)."""
         self._read, self._speed, self._tick_s, self._clock = read, speed, tick_s, clock
         self._paused = self._ended = self._back = False
         self._at_s, self._since_s = start_s, clock()
         self._heeded_s = clock()
-        # Set these before it plays: how to wait for keys, and whom to tell that all begins again.
-        self.wait: Callable[[float], Sequence[str]] = nobody_types
+        # Set these before it plays: a function that waits for keys, and one to call when it starts again.
+        self.wait: Callable[[float], Sequence[str]] = no_keys
         self.begin_again: Callable[[], None] | None = None
 
     @property
     def position_s(self) -> float:
-        """Where it is, in seconds since the recording's beginning."""
+        """The current position, in seconds since the recording's beginning."""
         passed_s = 0.0 if self._paused else self._clock() - self._since_s
         return self._at_s + passed_s * self._speed
 
     @property
     def status(self) -> str:
-        """Where it is and how fast it goes, in words."""
+        """The position and the speed, in words."""
         pace = "paused" if self._paused else f"x {self._speed:g}" if self._speed else "at once"
         return f"{self.position_s:.0f} s, {pace}"
 
     @property
     def keys(self) -> str:
-        """What keys do; only what can be read again goes back."""
+        """Acts on keys; only a recording that can be read again goes back."""
         return KEYS if self.begin_again else KEYS.replace("left/right", "right")
 
     def __iter__(self) -> Iterator[tuple[float, list[Event]]]:
@@ -88,7 +88,7 @@ class Player:
 
     @property
     def _is_time_to_look(self) -> bool:
-        """Where much is due at once, keys are heeded all the same."""
+        """Keys work even while many events are due at once."""
         return self._clock() - self._heeded_s >= self._tick_s
 
     def _heed(self, seconds: float) -> None:
@@ -111,7 +111,7 @@ class Player:
                     self._ended = True
 
     def _go_on(self, at_s: float, speed: float | None = None, paused: bool | None = None) -> None:
-        """From another place, at another speed, or not for now."""
+        """Continues from another place, at another speed, or pauses."""
         self._at_s, self._since_s = at_s, self._clock()
         self._speed = self._speed if speed is None else speed
         self._paused = self._paused if paused is None else paused

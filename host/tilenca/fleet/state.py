@@ -1,4 +1,4 @@
-"""What tiles say, added up: the state of every tile of the fleet. Owns no port and no clock."""
+"""The state of every tile of the fleet, built up from its sentences. Owns no port and no clock."""
 
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -19,7 +19,7 @@ from tilenca.protocol.sentences import (
 
 @dataclass(frozen=True)
 class PortNews:
-    """A port was opened, or cannot be read; `reason` says why not."""
+    """A port was opened, or cannot be read for `reason`."""
 
     time_s: float
     port: str
@@ -49,23 +49,23 @@ def as_json(heard: Heard) -> dict[str, Any]:
 
 @dataclass
 class TileView:
-    """All that is known of the tile behind one port.
+    """The known state of the tile behind one port.
 
     Attributes:
         port: the port.
-        is_open: whether it can be read now; `reason` why not.
-        was_open: whether it ever could.
+        is_open: whether it can be read now; `reason` tells why not.
+        was_open: whether it could be read at any time.
         outages: how often it went away.
         sentences: good lines.
         damaged: damaged lines.
         heard_s: time of the last good line; None before the first.
-        hello: what the tile said at boot, if we heard that.
+        hello: the tile's greeting at boot; None if we missed it.
         tile: its last state.
         links: the last report of each side, by letter.
-        health: how each side's link did lately, by letter.
+        health: the recent quality of each side's link, by letter.
         time: its last report of its time and memory.
-        error: the last thing it said to be wrong since its HELLO.
-        other_version: the protocol it speaks, if it is not ours.
+        error: the last error that it reported since its HELLO.
+        other_version: its protocol version, if it is not ours.
         board_test: whether its last line was the board test's.
     """
 
@@ -110,7 +110,7 @@ class TileView:
         self.tile_id = sentence.tile
         match sentence:
             case HelloSentence():
-                # The tile may have just started: what it said before is no longer so.
+                # The tile may have just started: earlier reports no longer hold.
                 self.hello, self.tile, self.links, self.health = sentence, None, {}, {}
                 self.time = self.error = self.other_version = None
             case TileSentence():

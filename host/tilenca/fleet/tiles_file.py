@@ -1,4 +1,4 @@
-"""`tiles.toml`: which board is which tile, and where it lies.
+"""`tiles.toml`: the id, the place and the board of each tile.
 
     [[tile]]
     id = 7
@@ -6,7 +6,7 @@
     col = 3
     board = "serial:95530343634351A0B1C2"
 
-A board is named by what stays when it is plugged in again: `serial:` its adapter's serial number; where
+A board's name survives replugging: `serial:` is its adapter's serial number; where
 adapters have none or share one, `location:` the USB socket; `port:` the name of a device that is not on USB.
 Rows count from the north, columns from the west.
 """
@@ -24,7 +24,7 @@ DEFAULT = Path("tiles.toml")
 MAX_TILE_ID = 255
 KINDS = ("serial", "location", "port")
 KEYS = {"id", "row", "col", "board"}
-# More rows or columns than any table has room for are a slip of the pen.
+# More rows or columns than any table has room for are a typing error.
 FAR = 999
 
 HEAD = """\
@@ -50,7 +50,7 @@ def read_tiles(path: Path) -> list[Place]:
     """The tiles of a file, in its order.
 
     Raises:
-        UsageError: it cannot be read, or something in it is wrong; the message names the line.
+        UsageError: it cannot be read or is not valid; the message names the line.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -99,7 +99,7 @@ def _place(about: Any, others: list[Place]) -> Place:
 
 
 def tile_count(count: int) -> str:
-    """So many tiles, in words."""
+    """A number of tiles, in words."""
     return f"{count} tile{'s' * (count != 1)}"
 
 
@@ -131,7 +131,7 @@ def _quoted(text: str) -> str:
 
 
 def write_tiles(path: Path, places: Iterable[Place]) -> None:
-    """Writes the file; what was there stays whole until the new one is.
+    """Writes the file; the old one stays whole until the new one is complete.
 
     Raises:
         UsageError: it cannot be written.

@@ -1,4 +1,4 @@
-"""What `tiles.toml` says after tiles were learnt anew: entries of boards not seen stay. Pure."""
+"""Merges newly learnt tiles into `tiles.toml`: entries of boards that were not seen stay. Pure."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ class Update:
 
     Attributes:
         places: all its tiles.
-        remarks: what a person should know, a line each.
+        remarks: lines for the person.
     """
 
     places: list[Place]
@@ -22,19 +22,19 @@ class Update:
 
 
 def update(before: Sequence[Place], learnt: Sequence[Place], kept: Sequence[Place], fixed: bool) -> Update:
-    """Joins what was learnt with what is kept.
+    """Joins the learnt places with the kept entries.
 
-    What tiles say of their neighbours leaves open where all of them lie: beside what is kept, they stay where
+    The tiles' links give their relative places only: if other entries are kept, the learnt tiles stay where
     they were.
 
     Args:
         before: the file so far, boards named as in `learnt`.
-        learnt: what was found out now.
-        kept: entries of `before` whose boards were not among those.
-        fixed: whether the learnt places are where tiles lie, not only how they lie to each other.
+        learnt: the places found now.
+        kept: entries of `before` whose boards were not seen now.
+        fixed: whether the learnt places are absolute, not only relative to each other.
 
     Raises:
-        TilencaError: a tile lies where one that is kept does.
+        TilencaError: a tile lies at the place of a kept one.
     """
     learnt_ids = {place.tile for place in learnt}
     replaced = [place for place in kept if place.tile in learnt_ids]
@@ -60,7 +60,7 @@ def update(before: Sequence[Place], learnt: Sequence[Place], kept: Sequence[Plac
 def _aligned(
     before: Sequence[Place], learnt: Sequence[Place], stay: Sequence[Place]
 ) -> tuple[list[Place], str]:
-    """What was learnt, moved to where most of it was; what was nowhere lies beside all else."""
+    """The learnt places, moved to where most tiles were; tiles without an old place lie beside all others."""
     known = {place.board: place for place in before}
     moves = Counter(
         (known[place.board].row - place.row, known[place.board].col - place.col)

@@ -78,7 +78,7 @@ class Fit:
         return self.update_cycles + CYCLES_PER_MS * self.period_ms
 
     @property
-    def busy(self) -> float:
+    def load(self) -> float:
         """Share of its time that the chip is awake; above 1 it does not keep up."""
         return self.awake_cycles / (CLOCK_PER_MS * self.period_ms)
 
@@ -103,7 +103,7 @@ class Fit:
             "sram_limit": SRAM_BYTES,
             "update_cycles": round(self.update_cycles),
             "update_ms": round(self.update_cycles / CLOCK_PER_MS, 1),
-            "busy": round(self.busy, 3),
+            "busy": round(self.load, 3),
             "shortest_period_ms": self.shortest_period_ms,
             "period_ms": self.period_ms,
             "fits": self.fits_period,

@@ -9,5 +9,5 @@ _LINE = re.compile(rb"(?:board test|button|colours|display|LEDs|side [NESW]): [ 
 
 
 def board_test_text(raw: bytes) -> str | None:
-    """What the board test says in a line; None if the line is not of it."""
+    """The board test's text in a line; None if the line is another program's."""
     return raw.decode("ascii") if _LINE.fullmatch(raw) else None

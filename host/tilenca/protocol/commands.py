@@ -1,4 +1,4 @@
-"""What the host tells a tile, as sentences (docs/PROTOCOL.md section 6)."""
+"""The host's commands to a tile, as sentences (docs/PROTOCOL.md section 6)."""
 
 from tilenca.protocol.constants import MAX_BLINK_S, PRESETS, SETTING_RANGES
 from tilenca.protocol.sentences import framed
@@ -28,7 +28,7 @@ def set_command(name: str, value: int | str) -> bytes:
 
 
 def blink_command(seconds: int) -> bytes:
-    """Lets a tile's face blink so long, 0..MAX_BLINK_S; 0 ends it.
+    """Lets a tile's display blink for some seconds, 0..MAX_BLINK_S; 0 ends it.
 
     Raises:
         ValueError: out of range.

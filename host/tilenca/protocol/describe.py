@@ -1,4 +1,4 @@
-"""Sentences in words that a person reads. Standard library only: PlatformIO's monitor uses it too."""
+"""Sentences in words for people. Standard library only: PlatformIO's monitor uses it too."""
 
 import re
 
@@ -45,12 +45,12 @@ def reset_words(cause: int) -> str:
 
 
 def said(sentence: Sentence) -> str:
-    """Who says what: the tile's id, the sentence's name, and its words."""
+    """The tile's id, the sentence's name, and its words."""
     return f"tile {sentence.tile} {type_of(sentence)} {words(sentence)}"
 
 
 def words(sentence: Sentence) -> str:
-    """What a sentence says, without the tile's id and the sentence's name."""
+    """A sentence in words, without the tile's id and the sentence's name."""
     match sentence:
         case TileSentence(_, uptime_ms, updates, label, _, margin, links, _):
             shown = (label or "nothing") if margin is None else f"{label} margin {margin}"

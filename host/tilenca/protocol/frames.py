@@ -15,7 +15,7 @@ from tilenca.protocol.constants import (
 
 
 def cobs_encode(payload: bytes) -> bytes:
-    """`payload` without any zero byte in it (Cheshire & Baker, 1999); the delimiter is not appended.
+    """`payload` encoded without zero bytes (Cheshire & Baker, 1999); the delimiter is not appended.
 
     Frames are far shorter than COBS's longest block, so that every block but the last stands for one zero.
 
@@ -44,7 +44,7 @@ def cobs_decode(encoded: bytes) -> bytes | None:
 
 @dataclass(frozen=True)
 class Frame:
-    """The state one tile tells one neighbour.
+    """The state that one tile sends to one neighbour.
 
     Attributes:
         side: of the sender, where it leaves: 0 N, 1 E, 2 S, 3 W.
@@ -70,7 +70,7 @@ def encode_payload(frame: Frame) -> bytes:
 
 
 def encode_frame(frame: Frame) -> bytes:
-    """The frame as it goes on the wire, delimiter included."""
+    """The frame's bytes on the wire, delimiter included."""
     return cobs_encode(encode_payload(frame)) + b"\0"
 
 
@@ -93,7 +93,7 @@ class FrameDecoder:
     """
 
     class Result(enum.Enum):
-        """What one byte brought."""
+        """The result of one byte."""
 
         PENDING = "pending"
         READY = "ready"

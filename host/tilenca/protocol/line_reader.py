@@ -7,7 +7,7 @@ from tilenca.protocol.board_test import board_test_text
 from tilenca.protocol.constants import MAX_SENTENCE
 from tilenca.protocol.sentences import Sentence, parse_sentence
 
-# A sentence begins at `$` and ends with two digits after `*`; whether it is one, its checksum says.
+# A sentence begins at `$` and ends with two digits after `*`; its checksum decides whether it is one.
 _CANDIDATE = re.compile(rb"\$[^*]*\*..", re.DOTALL)
 _BREAK = re.compile(rb"[\r\n]+|(?=\$)")
 
@@ -15,8 +15,8 @@ _BREAK = re.compile(rb"[\r\n]+|(?=\$)")
 class LineReader:
     """Cuts a stream of bytes into sentences and the damaged rest.
 
-    Nothing is lost in silence: every byte that is not part of a good sentence nor white space is in a damaged
-    line, but for the tail of a line that one began to read in its middle.
+    Nothing is lost silently: a byte that is neither white space nor part of a good sentence is in a damaged
+    line, except the tail of a line whose beginning was missed.
     """
 
     def __init__(self) -> None:
@@ -52,10 +52,10 @@ class Heard:
     """One line from a port.
 
     Attributes:
-        time_s: when, in seconds since 1970.
-        port: whence.
+        time_s: its time, in seconds since 1970.
+        port: its port.
         raw: the line's bytes, without its end.
-        sentence: what it says; None if it is damaged, or the board test's.
+        sentence: its sentence; None if it is damaged, or the board test's.
     """
 
     time_s: float
@@ -65,5 +65,5 @@ class Heard:
 
     @property
     def board_test(self) -> str | None:
-        """What the board test says in this line; None if it is not of it."""
+        """The board test's text in this line; None if the line is another program's."""
         return board_test_text(self.raw)

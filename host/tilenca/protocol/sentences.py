@@ -3,22 +3,21 @@
 No port and no clock. `protocol.commands` has the host's sentences, `protocol.frames` the tiles' frames.
 """
 
-import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from tilenca.base.sides import SIDES
+from tilenca.protocol import patterns
 from tilenca.protocol.checksums import checksum
-from tilenca.protocol.constants import MAX_CHANNELS, PROTOCOL_VERSION
+from tilenca.protocol.constants import PROTOCOL_VERSION
 
 
 @dataclass(frozen=True)
 class HelloSentence:
-    """What a tile says at boot and when asked.
+    """A tile's greeting at boot and on request.
 
     Attributes:
         tile: its id; 0: none was set.
-        updates: after so many it stops; 0: never.
+        updates: the number after which it stops; 0: it never stops.
         reset_cause: MCUSR, as far as the tile knows it.
         firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
         brightness: 0..255.
@@ -38,7 +37,7 @@ class HelloSentence:
 
 @dataclass(frozen=True)
 class TileSentence:
-    """What a tile is and shows; `label` is empty while nothing is shown.
+    """A tile's state and display; `label` is empty while nothing is shown.
 
     Attributes:
         class_index: the class that the tile decided for; None while nothing is shown.
@@ -60,11 +59,11 @@ class TileSentence:
 
 @dataclass(frozen=True)
 class LinkSentence:
-    """How one side's link does.
+    """The counters of one side's link.
 
     Attributes:
         age_ms: of the last good frame; None before the first, as are the next two.
-        overruns: bytes lost for want of room; south: how often edges were, or were given up as noise.
+        overruns: bytes lost because a buffer was full; south: how often edges were lost, or dropped as noise.
         neighbour: id of the tile that sent the last good frame; 0 if it has none.
         neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
     """
@@ -85,14 +84,14 @@ class LinkSentence:
 
 @dataclass(frozen=True)
 class TimeSentence:
-    """Where a tile's time and memory go.
+    """A tile's use of time and memory.
 
     Attributes:
         compute_us: the longest computation of an update since the last such sentence.
         awake_permille: share of the time since then that the main loop did not sleep.
         gap_us: the longest time from one turn of the main loop to the next since then.
-        stack_unused: bytes of the stack's room that were never used so far.
-        dropped: sentences dropped since boot, for want of room.
+        stack_unused: bytes of the stack's room that have never been used.
+        dropped: sentences dropped since boot because the buffer was full.
     """
 
     tile: int
@@ -106,7 +105,7 @@ class TimeSentence:
 
 @dataclass(frozen=True)
 class ErrorSentence:
-    """Something is wrong with a tile: a code word, and a text for people."""
+    """An error of a tile: a code word, and a text for people."""
 
     tile: int
     uptime_ms: int
@@ -116,7 +115,7 @@ class ErrorSentence:
 
 @dataclass(frozen=True)
 class AckSentence:
-    """A command was carried out: its name, and its fields as now in force."""
+    """A command was carried out: its name, and the fields now in force."""
 
     tile: int
     command: str
@@ -134,14 +133,14 @@ class NakSentence:
 
 @dataclass(frozen=True)
 class OtherVersionSentence:
-    """A good sentence of a tile that speaks another version of the protocol than we do."""
+    """A good sentence of a tile whose protocol version is not ours."""
 
     version: int
     tile: int
 
     @property
     def remedy(self) -> str:
-        """What it is and what to do about it."""
+        """The fact and the remedy."""
         return (
             f"speaks protocol {self.version}, these tools speak {PROTOCOL_VERSION}: "
             "flash it with the firmware that belongs to them (tilenca flash)"
@@ -170,7 +169,7 @@ def format_sentence(sentence: Sentence) -> bytes:
     """The sentence as a tile writes it, CR LF included.
 
     Raises:
-        ValueError: of another version's sentences only the version is known.
+        ValueError: the fields of another version's sentences are unknown.
     """
     fields: tuple[object, ...]
     match sentence:
@@ -198,36 +197,13 @@ def format_sentence(sentence: Sentence) -> bytes:
     return framed(",".join("" if value is None else str(value) for value in fields))
 
 
-def _fields(*parts: str) -> re.Pattern[str]:
-    return re.compile(",".join(parts))
-
-
-_SENTENCE = re.compile(rb"\$([ -#%-)+-~]*)\*([0-9A-F]{2})")
-_NUMBER, _OPTIONAL, _SIDE = r"(\d{1,10})", r"(\d{0,10})", rf"([{SIDES}])"
-_WORD, _TEXT = r"([A-Z]{1,16})", r"([ -+\--~]*)"
-_HEX2, _HEX4, _HEX8 = (rf"([0-9A-F]{{{digits}}})" for digits in (2, 4, 8))
-_HELLO = _fields("HELLO", *[_NUMBER] * 2, _HEX4, *[_NUMBER] * 4, _HEX2, _HEX8, _NUMBER)
-_STATE = rf"((?:[0-9A-F]{{2}}){{1,{MAX_CHANNELS}}})"
-_LABEL, _LINKS, _OPTIONAL_BYTE = r"([!-+\--~]?)", r"([N-][E-][S-][W-])", r"(\d{0,3})"
-_TILE = _fields("TILE", *[_NUMBER] * 3, _LABEL, *[_OPTIONAL_BYTE] * 2, _LINKS, _STATE)
-_LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
-_TIME = _fields("TIME", *[_NUMBER] * 7)
-_ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
-_ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")
-_NAK = _fields("NAK", _NUMBER, _WORD, _TEXT)
-# Sentences of other versions, in case the greeting was missed: TILE of versions 1 and 2, LINK of version 1.
-_OTHER_HELLO = re.compile(rf"HELLO,{_NUMBER},{_NUMBER}(?:,.*)?")
-_TILE_2 = _fields("TILE", *[_NUMBER] * 3, _LABEL, _LINKS, _STATE)
-_LINK_1 = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL)
-
-
 def parse_sentence(line: bytes | str) -> Sentence | None:
-    """The sentence that a line is, or None if it is anything else: noise, damaged, or of an unknown name.
+    """The sentence in a line; None for noise, damage, or an unknown name.
 
-    Never raises, whatever the line holds. White space around the sentence (CR LF) is ignored.
+    Never raises. White space around the sentence (CR LF) is ignored.
     """
     raw = line.encode("ascii", "replace") if isinstance(line, str) else line
-    match = _SENTENCE.fullmatch(raw.strip())
+    match = patterns.SENTENCE.fullmatch(raw.strip())
     if match is None or checksum(match[1]) != int(match[2], 16):
         return None
     text = match[1].decode("ascii")
@@ -236,22 +212,22 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
 
 
 def _hello(text: str) -> Sentence | None:
-    if (found := _HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
+    if (found := patterns.HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
         version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
             found.groups()
         )
         numbers = int(channels), int(classes), int(period_ms), int(updates)
         ids = int(cause, 16), int(firmware, 16), int(light)
         return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
-    if (found := _OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
+    if (found := patterns.OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
         return OtherVersionSentence(int(found[1]), int(found[2]))
     return None
 
 
 def _tile(text: str) -> Sentence | None:
-    if found := _TILE_2.fullmatch(text):
+    if found := patterns.TILE_2.fullmatch(text):
         return OtherVersionSentence(2, int(found[1]))
-    if (found := _TILE.fullmatch(text)) is None:
+    if (found := patterns.TILE.fullmatch(text)) is None:
         return None
     tile, uptime_ms, updates, label, decided, margin, links, state = found.groups()
     if bool(label) != bool(decided) or (margin and not decided):
@@ -263,33 +239,33 @@ def _tile(text: str) -> Sentence | None:
 
 
 def _link(text: str) -> Sentence | None:
-    if found := _LINK.fullmatch(text):
+    if found := patterns.LINK.fullmatch(text):
         tile, uptime_ms, side, *counts, age, overruns, neighbour, neighbour_side = found.groups()
         sent, received, corrupt, lost, foreign = map(int, counts)
         return LinkSentence(
             int(tile), int(uptime_ms), side, sent, received, corrupt, lost, foreign,
             int(age) if age else None, int(overruns), int(neighbour) if neighbour else None, neighbour_side,
         )  # fmt: skip
-    return OtherVersionSentence(1, int(found[1])) if (found := _LINK_1.fullmatch(text)) else None
+    return OtherVersionSentence(1, int(found[1])) if (found := patterns.LINK_1.fullmatch(text)) else None
 
 
 def _time(text: str) -> Sentence | None:
-    return TimeSentence(*map(int, found.groups())) if (found := _TIME.fullmatch(text)) else None
+    return TimeSentence(*map(int, found.groups())) if (found := patterns.TIME.fullmatch(text)) else None
 
 
 def _error(text: str) -> Sentence | None:
-    found = _ERROR.fullmatch(text)
+    found = patterns.ERROR.fullmatch(text)
     return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
 
 
 def _ack(text: str) -> Sentence | None:
-    if (found := _ACK.fullmatch(text)) is None:
+    if (found := patterns.ACK.fullmatch(text)) is None:
         return None
     return AckSentence(int(found[1]), found[2], tuple(found[3].split(",")[1:]))
 
 
 def _nak(text: str) -> Sentence | None:
-    found = _NAK.fullmatch(text)
+    found = patterns.NAK.fullmatch(text)
     return NakSentence(int(found[1]), found[2], found[3]) if found else None
 
 

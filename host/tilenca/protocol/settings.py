@@ -16,7 +16,7 @@ from tilenca.protocol.constants import (
 
 @dataclass(frozen=True)
 class Settings:
-    """A tile's settings in EEPROM; `tile_id` 0 means not set, `updates` 0 for ever."""
+    """A tile's settings in EEPROM; `tile_id` 0 means not set, `updates` 0 means for ever."""
 
     tile_id: int
     period_ms: int

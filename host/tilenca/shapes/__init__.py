@@ -1,1 +1,1 @@
-"""Shape files, drawings and what they may become, glyphs; batches of cells for everything that computes."""
+"""Shape files, drawings and their variants, glyphs; batches of cells for everything that computes."""

@@ -1,4 +1,4 @@
-"""The drawings of one or more shape files as arrays: what training and simulation compute on.
+"""The drawings of one or more shape files as arrays, for training and simulation.
 
 Only real tiles are computed. A batch of any drawings is one flat list of cells with a table of neighbours in
 which "no neighbour" is an index one past the last cell, where callers keep a row of zeros. numpy only.
@@ -111,7 +111,7 @@ class Drawings:
         return Batch(neighbours, sample, self.classes[chosen][sample], place, starts)
 
     def overlap(self, old: int, new: int, random: np.random.Generator) -> Indices:
-        """Where the tiles of drawing `new` stand on those of `old`, when one is rebuilt into the other.
+        """The tiles of `old` that the tiles of drawing `new` stand on, when one is rebuilt into the other.
 
         The two are laid on each other so that the smaller bounding box lies inside the larger, at a random
         place (a narrow "1" may stand on any column of a "4").
@@ -148,7 +148,7 @@ def load_drawings(
     Args:
         paths: the files; each holds drawings of one scale.
         max_classes: how many classes the model's state has room for; None: not checked.
-        labels: a model's classes, which then are the task's; None: the labels in order of first appearance.
+        labels: a model's classes, to use as the task's; None: the labels in order of first appearance.
 
     Raises:
         UsageError: a file is not valid, two files contradict each other, or a label is not among `labels`.
@@ -159,7 +159,7 @@ def load_drawings(
 def _join(
     paths: Sequence[Path], tasks: Iterable[Task], max_classes: int | None, labels: Sequence[str] | None
 ) -> Drawings:
-    """`load_drawings` with what is in the files; each task is taken when its file's turn has come."""
+    """`load_drawings` of tasks; each task is taken only at its file's turn, so that errors come in order."""
     shapes: list[Shape] = []
     groups: list[int] = []
     found: dict[str, None] = {}
@@ -205,7 +205,7 @@ def load_training_task(
 
     Args:
         paths: the files; the first may say that its drawings were drawn at other sizes too.
-        stretch: how far the recipe stretches drawings; one that does not trains on the given files alone.
+        stretch: the recipe's largest stretch factor; 1 trains on the given files alone.
         max_classes: how many classes the model's state has room for.
         labels: a model's classes, see `load_drawings`.
 
@@ -226,7 +226,7 @@ def load_training_task(
 
 
 def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:
-    """Refuses sizes at which two classes are one drawing, and a size held out that is drawn all the same."""
+    """Refuses sizes at which two classes are one drawing, and a held-out size that is nevertheless drawn."""
     for size in (*sizes.trained, *sizes.more, *sizes.held_out):
         seen: dict[tuple[str, ...], Shape] = {}
         for shape in task.shapes:

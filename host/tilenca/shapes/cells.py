@@ -1,4 +1,4 @@
-"""The tiles of a drawing as cells, and how they hang together."""
+"""The tiles of a drawing as cells, and whether they are connected."""
 
 from collections.abc import Iterable, Sequence
 
@@ -13,7 +13,7 @@ def cells_of(rows: Iterable[str]) -> tuple[tuple[int, int], ...]:
 
 
 def connected(cells: Iterable[tuple[int, int]]) -> bool:
-    """Whether all cells hang together by their sides."""
+    """Whether all cells are connected by their sides."""
     left = set(cells)
     front = [left.pop()] if left else []
     while front:

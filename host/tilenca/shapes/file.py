@@ -2,8 +2,8 @@
 
 A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows, `#` a tile and `.` or a blank
 none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
-labels in order of first appearance. A table `[sizes]` says at what other sizes the task's drawings keep their
-class (`tilenca.shapes.sizes`).
+labels in order of first appearance. A table `[sizes]` lists other sizes at which the task's drawings keep
+their class (`tilenca.shapes.sizes`).
 """
 
 import re
@@ -21,7 +21,7 @@ from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
 from tilenca.shapes.stretch import stretch
 
 EMPTY = ".", " "
-UNKNOWN = "-"  # the label of what belongs to no class
+UNKNOWN = "-"  # the label of drawings of no class
 
 _HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
 _GRID = re.compile(r"""\s*grid\s*=\s*(?P<quotes>\"{3}|'{3})?(?P<row>.*?)\s*$""")
@@ -79,7 +79,7 @@ class Task:
         """The shape called `name` (`4`, or `4@2` for the second drawing of "4").
 
         Raises:
-            UsageError: the file has none; the message lists what it has.
+            UsageError: the file has none; the message lists its shapes.
         """
         return self.shapes[find_shape(self.shapes, name, self.path)]
 
@@ -88,7 +88,7 @@ def find_shape(shapes: Sequence[Shape], name: str, path: Path) -> int:
     """The index of the shape called `name`.
 
     Raises:
-        UsageError: there is none; the message names the file and lists what it has.
+        UsageError: there is none; the message names the file and lists its shapes.
     """
     for number, shape in enumerate(shapes):
         if shape.name == name:

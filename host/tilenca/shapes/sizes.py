@@ -1,10 +1,10 @@
-"""At what sizes a task's drawings keep their class: the table `[sizes]` of a shape file.
+"""The sizes at which a task's drawings keep their class: the table `[sizes]` of a shape file.
 
 [sizes]
 from = "5x3"                     # rows x columns; the drawings are stretched to every size from here
 to = "12x10"                     # to here, and trained on
 more = ["15x13"]                 # and to these
-held_out = ["8x5", "20x16"]      # but not to these: they measure what a model makes of a new size
+held_out = ["8x5", "20x16"]      # but not to these: they measure a model on new sizes
 drawn = ["digits-3x3.toml"]      # files with the same classes, drawn by hand, beside this one
 """
 
@@ -28,7 +28,7 @@ class Sizes:
 
     Attributes:
         trained: sizes the drawings are stretched to.
-        more: single larger ones, which are not asked about.
+        more: single larger ones, which are not measured.
         held_out: sizes kept for measuring.
         drawn: files of drawings at other sizes.
     """
@@ -51,7 +51,7 @@ class Sizes:
 
 
 def size_name(size: Size) -> str:
-    """Rows x columns, as people write it."""
+    """A size as text, rows x columns."""
     return f"{size[0]}x{size[1]}"
 
 

@@ -1,8 +1,9 @@
 """The same drawing at another size: lines get longer, not thicker.
 
-A drawing is seen as tiles joined to their neighbours. Stretched, every row keeps its tiles and the rows put
-in between hold what joins the one above to the one below; columns likewise. Strokes one tile wide stay one
-tile wide, filled areas stay filled. Shrinking takes away rows and columns that stretching would put back.
+A drawing consists of tiles joined to their neighbours. Stretching keeps the tiles of every row; a row in
+between has a tile wherever the rows above and below both have one; columns likewise. Strokes one tile wide
+stay one tile wide, filled areas stay filled. Shrinking removes rows and columns that stretching would
+restore.
 """
 
 from collections.abc import Iterator, Sequence

@@ -12,7 +12,7 @@ from tilenca.shapes.cells import cells_of, connected, removable
 from tilenca.shapes.stretch import Rows, smallest
 
 Cell = tuple[int, int]
-GIVE_UP = 300  # draws in a row that bring nothing new
+GIVE_UP = 300  # draws in a row without a new drawing
 
 
 def rows_of(cells: Iterable[Cell]) -> Rows:
@@ -34,7 +34,7 @@ def without_one(rows: Rows) -> Iterator[Rows]:
 
 
 class Known:
-    """What a task's drawings say of others: which class a drawing has, whole or damaged.
+    """An index of a task's drawings: the class of any drawing, whole or damaged.
 
     Args:
         drawings: (label, rows) of every drawing of the task, all sizes.
@@ -58,7 +58,7 @@ class Known:
         ]
 
     def lookalikes(self) -> dict[str, list[str]]:
-        """For every label those that it looks like when the wrong tile is missing: damage nobody can see."""
+        """For every label the others that it looks like when the wrong tile is missing."""
         found: dict[str, set[str]] = {}
         for label, rows in self._drawings:
             for less in without_one(rows):
@@ -87,7 +87,7 @@ def half(random: np.random.Generator, rows: Rows) -> Rows:
 
 
 def edited(random: np.random.Generator, rows: Rows, edits: int) -> Rows | None:
-    """The drawing with some tiles put down or taken away; None where that tears it apart."""
+    """The drawing with some tiles added or removed; None if that tears it apart."""
     height, width = len(rows), len(rows[0])
     tiles = set(cells_of(rows))
     for _ in range(edits):
@@ -122,12 +122,12 @@ def some_segments(random: np.random.Generator, strokes: Sequence[frozenset[Cell]
 
 
 def held_out(rows: Rows) -> bool:
-    """Whether a drawing of no class is kept from training, to measure with: a quarter of all, by content."""
+    """Whether a drawing of no class is kept from training for measurements: a quarter of all, by content."""
     return sum(index * ord(mark) for index, mark in enumerate("/".join(rows), start=1)) % 4 == 0
 
 
 def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Rows], bool]) -> list[Rows]:
-    """Draws until there are `wanted` different drawings that fit, or hardly a new one turns up."""
+    """Draws until `wanted` different drawings fit, or until `GIVE_UP` draws in a row bring nothing new."""
     seen: set[Rows] = set()
     found: list[Rows] = []
     idle = 0
@@ -142,7 +142,7 @@ def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Row
     return found
 
 
-# Given drawings, draws one after the other of those made from them; None where a try came to nothing.
+# From drawings it makes a function that draws variants of them; that returns None if a try fails.
 Drawer = Callable[[Sequence[Rows], np.random.Generator], Callable[[], Rows | None]]
 
 
@@ -172,7 +172,7 @@ def some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Calla
 
 
 def _grow(random: np.random.Generator, tiles: int, room: set[Cell]) -> Rows:
-    """Tiles put down one after the other, each beside one that lies there already."""
+    """Tiles added one after the other, each beside an earlier one."""
     everywhere = sorted(room)
     front = [everywhere[int(random.integers(len(everywhere)))]]
     grown: set[Cell] = set()

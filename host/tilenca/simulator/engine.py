@@ -1,4 +1,4 @@
-"""The update of a cell: here in the firmware's arithmetic; `training.float_engine` uses tensors."""
+"""The update of a cell in the firmware's arithmetic; `training.float_engine` computes it with tensors."""
 
 from typing import Any, Protocol
 
@@ -24,7 +24,7 @@ class Engine(Protocol):
         """(cells, C) states of tiles that were just switched on."""
 
     def message(self, states: States) -> States:
-        """(N, C) the messages that cells send, and see of themselves."""
+        """(N, C) the messages that cells send, and perceive as their own."""
 
     def update(self, states: States, seen: States) -> States:
         """(N, C) new states from the old ones and (N, 5 C) messages: own, N, E, S, W."""

@@ -24,19 +24,19 @@ class NumpyRollout:
         self.own = engine.message(states)
         # The message that each cell holds of its N, E, S, W neighbour; the last row stands for no cell.
         self.received = np.zeros((len(states) + 1, len(SIDES), engine.channels), self.own.dtype)
-        self.asked = setup.alive.copy()
+        self.counted = setup.alive.copy()
         if setup.fault != "away":
-            self.asked[setup.faulty[setup.faulty >= 0]] = False
+            self.counted[setup.faulty[setup.faulty >= 0]] = False
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
-        """As `CompiledRollout.run`, by one thread whatever `threads` is."""
+        """As `CompiledRollout.run`, but always in one thread."""
         del threads
         starts = self.setup.starts[:-1]
-        total = np.add.reduceat(self.asked, starts, dtype=np.float32)
+        total = np.add.reduceat(self.counted, starts, dtype=np.float32)
         for step in range(len(right)):
             while not self._tick():
                 pass
-            good = self.asked & (self.shown == self.setup.target)
+            good = self.counted & (self.shown == self.setup.target)
             right[step] = np.add.reduceat(good, starts, dtype=np.float32) / total
             if shown is not None:
                 shown[step] = self.shown

@@ -1,8 +1,8 @@
 """Batches of grids on the schedule of real tiles or of the paper, thousands at a time.
 
-A `Simulator` owns many runs side by side as one flat list of cells. An `Engine` computes the cells: the
-firmware's own core (`FastEngine`), which is compiled together with the schedule (`rollout_library`), or
-anything else, such as tensors (`tilenca.training.float_engine`), which follows the same schedule in numpy
+A `Simulator` owns many runs side by side as one flat list of cells. An `Engine` computes the cells.
+`FastEngine` is the firmware's own core, compiled together with the schedule (`rollout_library`). Any other
+engine, such as tensors (`tilenca.training.float_engine`), follows the same schedule in numpy
 (`numpy_rollout`).
 """
 
@@ -21,48 +21,8 @@ from tilenca.simulator.rollout_library import DARK, NOBODY, CompiledRollout, Set
 
 ScheduleKind = Literal["random", "clock"]
 
-# Cell updates between two checks for anything else, such as Ctrl-C: some tenths of a second.
+# Cell updates between two checks for Ctrl-C: some tenths of a second.
 ATTENTION = 500_000
-
-
-@dataclass(frozen=True)
-class Conditions:
-    """The conditions of a run. Times are in steps: the nominal period, one update per tile.
-
-    Attributes:
-        schedule: "random": twice per step a random half of the tiles updates and its messages arrive
-            at once (the paper's sampler); "clock": each tile has its own phase, period, latency and start.
-        loss: share of messages lost, 0..1.
-        lost: the substitute for a lost message: the last one "held" until its sender was silent for
-            `SILENT_PERIODS` steps (as tiles do), or "zero".
-        dead: share of tiles that are silent and dark from the start; they are not counted.
-        drift: largest relative difference of a tile's period from the nominal one.
-        latency: least and most time a tile's message takes, less than the shortest period.
-        boot: tiles are switched on within this time of each other; step 0 is when the last one is.
-
-    Raises:
-        ValueError: a value is out of range.
-    """
-
-    schedule: ScheduleKind = "random"
-    loss: float = 0.0
-    lost: Literal["held", "zero"] = "held"
-    dead: float = 0.0
-    drift: float = 0.01
-    latency: tuple[float, float] = (0.1, 0.9)
-    boot: float = 10.0
-
-    def __post_init__(self) -> None:
-        if self.schedule not in ("random", "clock") or self.lost not in ("held", "zero"):
-            raise ValueError(f"no such schedule or loss: {self.schedule!r}, {self.lost!r}")
-        if not (0 <= self.loss <= 1 and 0 <= self.dead <= 1):
-            raise ValueError(f"loss {self.loss} and dead {self.dead} must be shares, 0..1")
-        in_time = 0 < self.latency[0] <= self.latency[1] < 1 - self.drift
-        if not (in_time and self.drift >= 0 and 0 <= self.boot < float("inf")):
-            raise ValueError(
-                f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "
-                "message arrives before its sender sends the next"
-            )
 
 
 @dataclass(frozen=True)
@@ -74,8 +34,8 @@ class Fault:
             sending the state it had; "away": switched off and dark then, and on again at `end`, in the seed
             state.
         tiles: (R,) which tile of its drawing, -1 for none of that run.
-        begin: number of steps that come before; 0: from before the first tile is switched on.
-        end: number of steps that come before a tile that was away is back.
+        begin: steps before the fault begins; 0: it begins before the first tile is switched on.
+        end: steps before a tile that was away is back.
 
     Raises:
         ValueError: the steps do not fit the kind.
@@ -95,6 +55,48 @@ class Fault:
             )
         if self.end is not None and self.end <= self.begin:
             raise ValueError(f"fault: ends at {self.end}, but begins at {self.begin}")
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The conditions of a run. Times are in steps: the nominal period, one update per tile.
+
+    Attributes:
+        schedule: "random": twice per step a random half of the tiles updates and its messages arrive
+            at once (the paper's sampler); "clock": each tile has its own phase, period, latency and start.
+        loss: share of messages lost, 0..1.
+        lost: the substitute for a lost message: the last one "held" until its sender was silent for
+            `SILENT_PERIODS` steps (as tiles do), or "zero".
+        dead: share of tiles that are silent and dark from the start; they are not counted.
+        drift: largest relative difference of a tile's period from the nominal one.
+        latency: least and most time a tile's message takes, less than the shortest period.
+        boot: tiles are switched on within this time of each other; step 0 is when the last one is.
+        fault: of one tile of each run; None: none.
+
+    Raises:
+        ValueError: a value is out of range.
+    """
+
+    schedule: ScheduleKind = "random"
+    loss: float = 0.0
+    lost: Literal["held", "zero"] = "held"
+    dead: float = 0.0
+    drift: float = 0.01
+    latency: tuple[float, float] = (0.1, 0.9)
+    boot: float = 10.0
+    fault: Fault | None = None
+
+    def __post_init__(self) -> None:
+        if self.schedule not in ("random", "clock") or self.lost not in ("held", "zero"):
+            raise ValueError(f"no such schedule or loss: {self.schedule!r}, {self.lost!r}")
+        if not (0 <= self.loss <= 1 and 0 <= self.dead <= 1):
+            raise ValueError(f"loss {self.loss} and dead {self.dead} must be shares, 0..1")
+        in_time = 0 < self.latency[0] <= self.latency[1] < 1 - self.drift
+        if not (in_time and self.drift >= 0 and 0 <= self.boot < float("inf")):
+            raise ValueError(
+                f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "
+                "message arrives before its sender sends the next"
+            )
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,6 @@ class Simulator:
         conditions: of all runs.
         random: the only source of chance; it is used here only, not during the runs.
         states: (N, C) to start from, cells in the order of `drawings.batch(chosen)`; None: the seed state.
-        fault: of one tile of each run; None: none.
         threads: how many to use, None: one per processor; results do not depend on it.
 
     Attributes:
@@ -141,10 +142,10 @@ class Simulator:
         states: (N, C) current states; not to be written to.
         shown: (N,) int8, the class each tile shows now, -1 for dark.
         alive: (N,) whether a tile is not one of `conditions.dead`.
-        setup: everything that was drawn beforehand.
+        setup: the random choices of all runs, drawn beforehand.
 
     Raises:
-        ValueError: `states` or `fault` do not fit the runs, or a run has no tile that counts.
+        ValueError: `states` or `conditions.fault` do not fit the runs, or a run has no tile that counts.
     """
 
     def __init__(
@@ -156,7 +157,6 @@ class Simulator:
         random: np.random.Generator,
         states: States | None = None,
         *,
-        fault: Fault | None = None,
         threads: int | None = None,
     ) -> None:
         self.threads = processors() if threads is None else threads
@@ -167,33 +167,13 @@ class Simulator:
         if self.states.shape != (cells, engine.channels):
             raise ValueError(f"states are {self.states.shape}, the runs need {(cells, engine.channels)}")
         self.shown = np.full(cells, DARK, np.int8)
-        self.alive = _draw_alive(batch, conditions.dead, random)
-        faulty = _faulty(batch, fault)
-        setup = Setup(
-            starts=np.append(batch.starts, cells),
-            neighbours=batch.neighbours,
-            alive=self.alive,
-            target=batch.target,
-            seeds=random.integers(1 << 64, size=len(batch.starts), dtype=np.uint64),
-            loss=conditions.loss,
-            zeros=conditions.lost == "zero",
-            clocks=_draw_clocks(batch, conditions, random) if conditions.schedule == "clock" else None,
-            fault=fault.kind if fault else "none",
-            faulty=faulty,
-            begin=fault.begin if fault else 0,
-            end=(fault.end or 0) if fault else 0,
-        )
-        asked = self.alive.copy()
-        if fault is not None and fault.kind != "away":
-            asked[faulty[faulty != NOBODY]] = False
-        if not np.logical_or.reduceat(asked, batch.starts).all():
-            raise ValueError("fault: a run has no other living tile, and nobody is left to ask")
-        self.setup = setup
+        self.setup = _draw_setup(batch, conditions, random)
+        self.alive = self.setup.alive
         self._rollout: CompiledRollout | NumpyRollout
         if isinstance(engine, FastEngine):
-            self._rollout = CompiledRollout(engine.model, setup, self.states, self.shown)
+            self._rollout = CompiledRollout(engine.model, self.setup, self.states, self.shown)
         else:
-            self._rollout = NumpyRollout(engine, setup, self.states, self.shown)
+            self._rollout = NumpyRollout(engine, self.setup, self.states, self.shown)
 
     def run(
         self, steps: int, record: bool = False, tell: Callable[[int], None] = lambda done: None
@@ -216,18 +196,44 @@ class Simulator:
 
     @property
     def updates(self) -> int:
-        """How many cell updates were computed in all."""
+        """The number of cell updates computed in all."""
         return self._rollout.updates
 
 
 def processors() -> int:
-    """How many processors this process may use."""
+    """The number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _draw_setup(batch: Batch, conditions: Conditions, random: np.random.Generator) -> Setup:
+    """Draws everything that chance decides, before the runs begin."""
+    fault = conditions.fault
+    alive = _draw_alive(batch, conditions.dead, random)
+    faulty = _faulty(batch, fault)
+    counted = alive.copy()
+    if fault is not None and fault.kind != "away":
+        counted[faulty[faulty != NOBODY]] = False
+    if not np.logical_or.reduceat(counted, batch.starts).all():
+        raise ValueError("fault: a run has no other living tile, so none is left to count")
+    return Setup(
+        starts=np.append(batch.starts, len(batch.sample)),
+        neighbours=batch.neighbours,
+        alive=alive,
+        target=batch.target,
+        seeds=random.integers(1 << 64, size=len(batch.starts), dtype=np.uint64),
+        loss=conditions.loss,
+        zeros=conditions.lost == "zero",
+        clocks=_draw_clocks(batch, conditions, random) if conditions.schedule == "clock" else None,
+        fault=fault.kind if fault else "none",
+        faulty=faulty,
+        begin=fault.begin if fault else 0,
+        end=(fault.end or 0) if fault else 0,
+    )
 
 
 def _draw_alive(batch: Batch, dead: float, random: np.random.Generator) -> NDArray[np.bool_]:
     draws = random.random(len(batch.sample))
-    # At least one tile of every run stays alive, so that there is one to count.
+    # At least one tile of every run stays alive, so that one is left to count.
     luckiest = np.maximum.reduceat(draws, batch.starts)[batch.sample]
     alive: NDArray[np.bool_] = (draws >= dead) | (draws == luckiest)
     return alive

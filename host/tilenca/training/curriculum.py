@@ -1,10 +1,10 @@
-"""The drawings to train on: a task's own, the same stretched, damaged, and drawings of no class.
+"""The drawings to train on: a task's own, stretched ones, damaged ones, and drawings of no class.
 
-Every drawing has a scale, within which grids are rebuilt into each other, and a weight, its share of the
-grids. Task, recipe and one random generator decide all of it.
+A grid is rebuilt only into drawings of its own scale; a drawing's weight is its share of the grids. The task,
+the recipe and one random generator decide all of it.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tilenca.shapes import variants
 from tilenca.shapes.batch import Drawings
+from tilenca.shapes.derive import at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows, smallest
@@ -28,12 +29,54 @@ class Curriculum:
     Attributes:
         drawings: all of them; `groups` are scales.
         weights: (S,) float64, share of the grids that a drawing gets; sums to 1.
-        whole: (S,) bool, drawings of a class without damage: with which training begins.
+        whole: (S,) bool, drawings of a class without damage; training begins with them.
     """
 
     drawings: Drawings
     weights: NDArray[np.float64]
     whole: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class UnknownKind:
+    """A kind of drawings of no class.
+
+    Attributes:
+        share: of all drawings of no class.
+        elsewhere: whether they are made from the drawings at other sizes, or from those of the files.
+        each: how many of every scale.
+        drawer: makes them.
+    """
+
+    share: float
+    elsewhere: bool
+    each: int
+    drawer: variants.Drawer
+
+
+UNKNOWN_KINDS = (
+    UnknownKind(0.4, False, 100, variants.some_strokes),
+    UnknownKind(0.08, False, 100, variants.some_edited),
+    UnknownKind(0.17, False, 100, variants.some_halves),
+    UnknownKind(0.1, False, 100, variants.some_grown),
+    UnknownKind(0.22, True, 12, variants.some_strokes),
+    UnknownKind(0.03, True, 3, variants.some_edited),
+)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Drawings that have a share of the grids together.
+
+    Attributes:
+        share: of the grids, 0..1.
+        entries: scale and drawing.
+        whole: whether they are drawings of a class without damage.
+    """
+
+    share: float
+    entries: list[tuple[int, Shape]]
+    whole: bool = False
 
 
 def labels_of(task: Drawings, recipe: Recipe, max_classes: int) -> tuple[str, ...]:
@@ -54,90 +97,67 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     """
     fitting = sizes.within(task.largest, recipe.stretch)
     scales = _scales(task, fitting.trained + fitting.more)
-    known = Known((shape.label, shape.rows) for scale in scales for shape in scale)
-    damaged = list(_damaged(scales[:1], known)) if recipe.damaged else []
-    # A stroke missing from a large drawing looks, larger, like one tile missing from a small one.
-    doubtful = {smallest(shape.rows) for _, shape in damaged}
-    drawn = len(task.sources)
-    drawn_scales, others = range(drawn), range(drawn, len(scales))
-    with_unknown = recipe.unknown > 0 and UNKNOWN in task.labels
-    unknown = {
-        name: list(_unknown(scales, which, each, draw, known, doubtful, random)) if with_unknown else []
-        for name, which, each, draw in (
-            ("strokes", drawn_scales, 100, variants.some_strokes),
-            ("edited", drawn_scales, 100, variants.some_edited),
-            ("halves", drawn_scales, 100, variants.some_halves),
-            ("grown", drawn_scales, 100, variants.some_grown),
-            ("elsewhere", others, 12, variants.some_strokes),
-            ("elsewhere edited", others, 3, variants.some_edited),
-        )
-    }
-    shares = {
-        "strokes": 0.4,
-        "edited": 0.08,
-        "halves": 0.17,
-        "grown": 0.1,
-        "elsewhere": 0.22,
-        "elsewhere edited": 0.03,
-    }
-    kinds: list[tuple[float, list[tuple[int, Shape]], bool]] = [
-        (recipe.stretched, [(n, s) for n, scale in enumerate(scales) if n >= drawn for s in scale], True),
-        (recipe.damaged, damaged, False),
-        *((recipe.unknown * shares[name], found, False) for name, found in unknown.items()),
+    known = known_of(shape for scale in scales for shape in scale)
+    less = damaged(scales[0], known, DAMAGED) if recipe.damaged else []
+    drawn = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n < len(task.sources)]
+    stretched = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n >= len(task.sources)]
+    parts = [
+        _Part(recipe.stretched, stretched, whole=True),
+        _Part(recipe.damaged, [(0, shape) for shape in less]),
     ]
-    kinds = [kind for kind in kinds if kind[0] and kind[1]]
-    own = [(number, shape) for number, scale in enumerate(scales[:drawn]) for shape in scale]
-    kinds.insert(0, (1 - sum(kind[0] for kind in kinds), own, True))
-    entries = [entry for _, found, _ in kinds for entry in found]
-    is_whole = [whole for _, found, whole in kinds for _ in found]
-    weights = np.concatenate([np.full(len(found), share / len(found)) for share, found, _ in kinds])
+    if recipe.unknown > 0 and UNKNOWN in task.labels:
+        # A large drawing without a stroke looks like a small one without a tile.
+        doubtful = {smallest(shape.rows) for shape in less}
+        for kind in UNKNOWN_KINDS:
+            found = list(_unknown(kind, scales, len(task.sources), known, doubtful, random))
+            parts.append(_Part(recipe.unknown * kind.share, found))
+    parts = [part for part in parts if part.share and part.entries]
+    return _curriculum(task, [_Part(1 - sum(part.share for part in parts), drawn, whole=True), *parts])
+
+
+def _curriculum(task: Drawings, parts: Sequence[_Part]) -> Curriculum:
+    """The curriculum that consists of these parts."""
+    entries = [entry for part in parts for entry in part.entries]
     drawings = replace(
         task,
         shapes=tuple(shape for _, shape in entries),
         groups=tuple(scale for scale, _ in entries),
     )
-    return Curriculum(drawings, weights, np.array(is_whole))
+    weights = [np.full(len(part.entries), part.share / len(part.entries)) for part in parts]
+    whole = [part.whole for part in parts for _ in part.entries]
+    return Curriculum(drawings, np.concatenate(weights), np.array(whole))
 
 
 def _scales(task: Drawings, sizes: Sequence[Size]) -> list[list[Shape]]:
     """The drawings file by file, then those of the first file at every other size."""
-    files = [task.group(number) for number in range(len(task.sources))]
+    scales = [task.group(number) for number in range(len(task.sources))]
     taken: dict[Rows, str] = {shape.rows: shape.label for shape in task.shapes}
-    scales = list(files)
-    for size in sizes:
-        for up in (True, False):
-            scale = []
-            for shape in files[0]:
-                other = shape.stretched(size, up)
-                if other is not None and taken.setdefault(other.rows, shape.label) == shape.label:
-                    scale.append(other)
-            if scale and scale != scales[-1]:
-                scales.append(scale)
+    for shapes in at_sizes(scales[0], sizes):
+        scale = [shape for shape in shapes if taken.setdefault(shape.rows, shape.label) == shape.label]
+        if scale and scale != scales[-1]:
+            scales.append(scale)
     return scales
 
 
-def _damaged(scales: list[list[Shape]], known: Known) -> Iterator[tuple[int, Shape]]:
-    for number, scale in enumerate(scales):
-        for shape in scale:
-            for rows in known.damaged(shape.label, shape.rows):
-                yield number, Shape(shape.label, rows, f"{shape.name}{DAMAGED}")
-
-
 def _unknown(
-    scales: list[list[Shape]],
-    which: Iterable[int],
-    each: int,
-    drawer: variants.Drawer,
+    kind: UnknownKind,
+    scales: Sequence[Sequence[Shape]],
+    files: int,
     known: Known,
     doubtful: set[Rows],
     random: np.random.Generator,
 ) -> Iterator[tuple[int, Shape]]:
-    """Drawings of no class, of every scale in `which`; none that is a doubtful one at another size."""
+    """Drawings of no class, with their scales.
 
-    def fits(rows: Rows) -> bool:
-        return not (variants.held_out(rows) or known.is_known(rows) or smallest(rows) in doubtful)
-
-    for number in which:
-        draw = drawer([shape.rows for shape in scales[number]], random)
-        for rows in variants.draw_until(each, draw, fits):
+    Args:
+        kind: how they are made.
+        scales: the drawings of each scale.
+        files: how many scales are those of the files, which come first.
+        known: the index of all drawings of a class.
+        doubtful: the smallest forms of damaged drawings, which may not recur at any size.
+        random: the only source of chance.
+    """
+    for number in range(files, len(scales)) if kind.elsewhere else range(files):
+        draw = kind.drawer([shape.rows for shape in scales[number]], random)
+        for rows in draw_unknown(kind.each, draw, known, held_out=False, doubtful=doubtful):
             yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")

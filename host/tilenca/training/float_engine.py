@@ -10,7 +10,7 @@ from tilenca.training.network import TileNet
 
 
 class FloatEngine:
-    """The network as it was trained: in the tile's arithmetic, or in plain real numbers."""
+    """The trained network: in the tile's arithmetic, or in plain real numbers."""
 
     def __init__(self, model: Model) -> None:
         quantisation_aware = bool(model.metadata.get("recipe", {}).get("quantisation_aware", True))

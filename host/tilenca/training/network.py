@@ -24,7 +24,7 @@ LIMIT = 127.0
 
 
 class _Round(torch.autograd.Function):
-    """floor(x + 1/2), halves going up as in the tile; straight-through gradient."""
+    """floor(x + 1/2), which rounds halves up as the tile does; straight-through gradient."""
 
     @staticmethod
     def forward(ctx: Any, value: Tensor) -> Tensor:
@@ -36,7 +36,7 @@ class _Round(torch.autograd.Function):
 
 
 def round_half_up(value: Tensor) -> Tensor:
-    """The nearest whole number, halves going up; differentiable as the identity."""
+    """The nearest whole number, halves rounded up; its gradient is that of the identity."""
     return cast(Tensor, _Round.apply(value))  # type: ignore[no-untyped-call]
 
 
@@ -45,7 +45,7 @@ def perceive(own: Tensor, sent: Tensor, neighbours: Tensor) -> Tensor:
 
     Args:
         own: (N, C) float32, every cell's own message.
-        sent: (N, C) float32, the message that every cell's neighbours received from it last.
+        sent: (N, C) float32, the last message that neighbours received from each cell.
         neighbours: (4 * N,) int64, for each cell its N, E, S, W neighbour; N for none.
 
     Returns:
@@ -84,7 +84,7 @@ class TileNet(nn.Module):
         return {name: value.detach().cpu().numpy().copy() for name, value in self.named_parameters()}
 
     def weights(self) -> tuple[Tensor, ...]:
-        """w1, b1, w2, b2, w3, b3 as cells use them: rounded to the tile's steps, biases in units."""
+        """w1, b1, w2, b2, w3, b3 for the computation: rounded to the tile's steps, biases in units."""
         rounded = {
             name: round_half_up(value * SCALES[name]) / SCALES[name] if self.quantisation_aware else value
             for name, value in self.named_parameters()

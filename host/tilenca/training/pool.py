@@ -1,7 +1,8 @@
 """Grids whose rollouts go on from one iteration to the next: the perturbed and the undisturbed pool.
 
-One iteration looks at some ten updates of a grid only. A pool lets those be *any* ten of a long rollout: just
-switched on, rebuilt into another drawing while running (tiles that stay keep their state), or long converged.
+One iteration covers only some ten updates of a grid. With a pool these are *any* ten of a long rollout: a
+grid may have just been switched on, may have been rebuilt into another drawing (tiles that stay keep their
+state), or may have converged long ago.
 """
 
 from dataclasses import dataclass, fields
@@ -19,13 +20,13 @@ from tilenca.training.update_schedule import Circumstances
 States = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
-UNDISTURBED_DRAWN = 0.5  # share of the undisturbed pool that has the files' own drawings, which must last
+UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
 CONVERGED_AFTER = 40  # ticks without a disturbance after which a wrong tile counts as a failure
 
 
 @dataclass
 class Pool:
-    """Grids, and for how long each has been left alone.
+    """Grids, with the time since each was disturbed last.
 
     Attributes:
         drawing: (P,) int64, the drawing of each grid.
@@ -49,9 +50,9 @@ class Taken:
         undisturbed: which grids of the undisturbed pool come after them.
         batch: their cells.
         states: (N, C) float32.
-        converged: (B,) bool, left alone for so long that nothing should change any more.
-        given: what happens to them during the rollout; tiles that are away are back in the seed state when
-            the grid is taken again, and the undisturbed pool loses no messages.
+        converged: (B,) bool, undisturbed for so long that nothing should change any more.
+        given: their circumstances during the rollout; tiles that are away are back in the seed state when the
+        grid is taken again, and the undisturbed pool loses no messages.
     """
 
     perturbed: Numbers
@@ -62,8 +63,8 @@ class Taken:
     given: Circumstances
 
     @property
-    def asked(self) -> NDArray[np.bool_]:
-        """(B,) whether a grid must be right: all of its tiles are there, and were from the beginning."""
+    def counted(self) -> NDArray[np.bool_]:
+        """(B,) whether a grid's result counts: all of its tiles are there, and were from the beginning."""
         return ~(self.given.staggered | np.logical_or.reduceat(self.given.away, self.batch.starts))
 
 
@@ -79,7 +80,8 @@ class Pools:
         self.random = random
         self.channels = channels
         self._seed = np.eye(1, channels, dtype=np.float32)
-        # How often a drawing failed lately, 0..1; every drawing counts as failing until it was measured.
+        # The recent share of failures of each drawing, 0..1; a drawing counts as failing until it is
+        # measured.
         self.failures = np.ones(len(drawings))
         groups = np.array(drawings.groups)
         self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
@@ -96,7 +98,7 @@ class Pools:
         """Draws a batch, and disturbs some of it.
 
         Args:
-            progress: 0..1 over the training; it decides how many damaged and unknown drawings there are.
+            progress: 0..1 over the training; it decides the share of damaged and unknown drawings.
         """
         recipe, random = self.recipe, self.random
         self._weigh(progress)
@@ -121,7 +123,7 @@ class Pools:
         return Taken(perturbed, undisturbed, batch, chosen_states, converged, given)
 
     def _take_perturbed(self, count: int) -> tuple[Numbers, int, int]:
-        """Grids of the perturbed pool; of those first in it how many were reset, and how many disturbed."""
+        """Draws grids of the perturbed pool: up to which one they are reset, and up to which disturbed."""
         recipe = self.recipe
         if recipe.perturbed_pool == 0:
             self.perturbed = self._empty(count)
@@ -141,7 +143,7 @@ class Pools:
         return taken, resets, disturbed
 
     def _take_undisturbed(self) -> Numbers:
-        """Grids of the undisturbed pool; those whose time is over start anew."""
+        """Draws grids of the undisturbed pool; those at the end of their lifetime start anew."""
         recipe = self.recipe
         taken = self.random.choice(max(recipe.undisturbed_pool, 1), recipe.undisturbed_batch, replace=False)
         for number in taken:
@@ -155,7 +157,7 @@ class Pools:
         Args:
             taken: the batch.
             states: (N, C) float32.
-            ticks: (B,) how many ticks each grid ran.
+            ticks: (B,) ticks that each grid ran.
             right: (B,) whether all its tiles were right at the end.
         """
         batch, count = taken.batch, len(taken.perturbed)
@@ -163,7 +165,7 @@ class Pools:
         padded[batch.sample, batch.place] = np.where(taken.given.away[:, None], self._seed, states)
         self.perturbed.states[taken.perturbed] = padded[:count]
         self.perturbed.age[taken.perturbed] += ticks[:count]
-        self.perturbed.age[taken.perturbed[~taken.asked[:count]]] = 0
+        self.perturbed.age[taken.perturbed[~taken.counted[:count]]] = 0
         self.undisturbed.states[taken.undisturbed] = padded[count:]
         self.undisturbed.age[taken.undisturbed] += ticks[count:]
         # A grid that was disturbed a moment ago may be wrong; converged grids must be right.
@@ -196,7 +198,7 @@ class Pools:
             self.reset(pool, number)
 
     def _weigh(self, progress: float) -> None:
-        """Chances between the drawings' weights and the weights times how often each drawing fails."""
+        """Sets each drawing's chance: a mixture of its weight and its weight times its share of failures."""
         least, (begin, end) = 0.05, self.recipe.ramp
         grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
         weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)

@@ -1,10 +1,11 @@
-"""Long rollouts with the EMA weights: training meets states that only come with age, or rarely.
+"""Long rollouts with the EMA weights: they bring states into training that occur late, or rarely.
 
-A batch sees some ten updates of a grid, and between two batches the weights change: a slow drift under one
-set of weights hardly shows. The fast simulator runs the undisturbed grids for thousands of updates with the
-integers of real tiles, and training goes on from their last states. It also mines hard examples: it starts
-many drawings, rebuilds them, switches a tile off for a while, or gives them the states of others. The few
-that do not agree in time go into the perturbed pool.
+A batch covers some ten updates of a grid, and the weights change between two batches, so training hardly
+shows a slow drift under one set of weights. The fast simulator runs the undisturbed grids for thousands of
+updates with the integers of real tiles, and training goes on from their last states. The module also mines
+hard
+examples: it starts many drawings, rebuilds them, switches a tile off for a while, or gives them the states of
+others. The few that do not agree in time go into the perturbed pool.
 """
 
 import math
@@ -41,8 +42,8 @@ def refresh_undisturbed(
     Args:
         model: the network.
         pool: the grids; states and ages are changed.
-        drawings: those that `pool.drawing` counts.
-        steps: least and most; the logarithm of the number is drawn uniformly.
+        drawings: the drawings that `pool.drawing` numbers.
+        steps: least and most; the logarithm of the number is uniform between them.
         random: the only source of chance.
     """
     least, most = map(math.log, steps)
@@ -80,7 +81,7 @@ def mine_hard_examples(model: Model, pools: Pools, runs: int, random: np.random.
 
 
 def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Generator) -> Iterator[Simulator]:
-    """Whole drawings that begin, are rebuilt, get a tile back, or are put together from tiles of others."""
+    """Trials: whole drawings that start, are rebuilt, get a tile back, or have the states of other tiles."""
     drawings = pools.drawings
 
     def some() -> NDArray[np.int64]:
@@ -98,7 +99,7 @@ def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Gener
 
     chosen = pools.pick_whole(runs, drawn=True)
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
-    back = Simulator(engine, drawings, chosen, Conditions("clock"), random, fault=away)
+    back = Simulator(engine, drawings, chosen, Conditions("clock", fault=away), random)
     back.run(BEFORE)
     yield back
 

@@ -1,4 +1,4 @@
-"""Named ways to train a model. Recipe, shapes and seed decide the result, and nothing else does."""
+"""Named ways to train a model. Recipe, shapes and seed alone decide the result."""
 
 from dataclasses import dataclass, replace
 
@@ -14,8 +14,8 @@ class Recipe:
     A *tick* is one step of a rollout, in which some of the tiles update; rates are fractions 0..1.
 
     Attributes:
-        hidden: width of both hidden layers, where `--hidden` does not say.
-        seeds: trainings side by side, of which the best is kept, where `--seeds` does not say.
+        hidden: width of both hidden layers, unless `--hidden` says otherwise.
+        seeds: trainings side by side, unless `--seeds` says otherwise; the best is kept.
         iterations: optimiser steps.
         batch: drawings per optimiser step, those of the undisturbed pool included.
         ticks: least and most ticks of a rollout; up to twice as many for large drawings.
@@ -111,8 +111,8 @@ class Recipe:
     validation_runs: int = 100
 
 
-# What real tiles need: no tile is reset, clocks differ, messages and tiles get lost, states never drift,
-# and tiles do not name a shape that is none of the task's.
+# For real tiles: no tile is reset, clocks differ, messages and tiles get lost, states must not drift, and
+# tiles must not name a shape that is none of the task's.
 FULL = Recipe(
     hidden=DEFAULT_HIDDEN,
     iterations=40_000,
@@ -176,7 +176,7 @@ RECIPES: dict[str, Recipe] = {
         clip_norm=0.0,
         quantisation_aware=False,
     ),
-    # Seconds long and of no use on tiles: shows that the whole chain works.
+    # Takes seconds and is of no use on tiles: it shows that the whole chain works.
     "smoke": replace(
         FULL,
         hidden=40,
@@ -201,7 +201,7 @@ def find_recipe(name: str) -> Recipe:
     """The recipe called `name`.
 
     Raises:
-        UsageError: there is none; the message lists what there is.
+        UsageError: there is none; the message lists the recipes.
     """
     if name not in RECIPES:
         raise UsageError(f"no recipe '{name}'; there are: {' '.join(RECIPES)}")
@@ -209,5 +209,5 @@ def find_recipe(name: str) -> Recipe:
 
 
 def aims_of(recipe: Recipe) -> Aims:
-    """What a recipe trains for."""
+    """The aims of a recipe."""
     return Aims(recipe.stretch, recipe.damaged > 0, recipe.unknown > 0)

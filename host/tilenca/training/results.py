@@ -19,9 +19,9 @@ class Result:
 
     Attributes:
         model: the integer model.
-        metrics: of `metrics.validate`, and how training ended.
-        history: (iteration, loss, agreement) at intervals.
-        checks: (iteration, shortfall, share by kind of question) of the short measurements.
+        metrics: of `evaluator.validate`, and the end of the training.
+        history: (iteration, loss, agreement) of each interval.
+        checks: (iteration, shortfall, share by kind of measurement) of the short measurements.
     """
 
     model: Model

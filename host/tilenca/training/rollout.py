@@ -1,7 +1,7 @@
 """Rollouts of cells on a schedule, and the gradient of their last states.
 
-`rollout_by_autograd` does it in a dozen plain lines, and runs on any device. On a CPU `rollout` computes the
-same in one compiled call (`rollout_kernel`), and only the cells that update; a test compares them.
+`rollout_by_autograd` does it in a dozen plain lines, on any device. On a CPU `rollout` computes the same in
+one compiled call (`rollout_kernel`), and computes only the cells that update; a test compares the two.
 """
 
 from collections.abc import Callable, Iterable
@@ -77,7 +77,7 @@ class _Rollout(torch.autograd.Function):
 
 
 def _side_by_side(do: Callable[[Part], Result], parts: Iterable[Part]) -> list[Result]:
-    """`do` of every part, in as many threads as `use_threads` set."""
+    """Calls `do` for every part, in the threads that `use_threads` set."""
     return [do(part) for part in parts] if _threads is None else list(_threads.map(do, parts))
 
 

@@ -16,7 +16,7 @@ import torch
 
 from tilenca.base.errors import InterruptedRunError, TilencaError
 from tilenca.base.signals import SIGNALS
-from tilenca.evaluation.metrics import Evaluator
+from tilenca.evaluation.evaluator import Evaluator
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
@@ -44,8 +44,8 @@ class Job:
         config: of the run; its labels are those of the curriculum.
         task: the drawings of the files.
         sizes: of the task.
-        device: `cpu` or `cuda`.
-        out: where checkpoints go.
+        device: of the tensors, `cpu` or `cuda`.
+        out: the folder of the checkpoints.
         resume: whether to go on from a checkpoint.
         threads: how many processors it may use; the result does not depend on it.
     """
@@ -86,9 +86,7 @@ def train(job: Job, tell: Tell) -> Trained:
         trainer = make_trainer(job)
         recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
         check: tuple[int, int, float] | None = None
-        suite = make_suite(
-            job.task, job.sizes, job.config.labels, aims_of(job.config.recipe), job.config.seed
-        )
+        suite = make_suite(job.task, job.sizes, job.config.labels, aims_of(recipe), job.config.seed)
         while not trainer.done:
             trainer.step()
             if recipe.check_every and trainer.iteration % recipe.check_every == 0:
@@ -116,12 +114,12 @@ def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
     trainer.measured(shortfall, shares)
     last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
     trainer.ended = len(last) == HOLDS_TO_END and not any(last)
-    asked = [row for row in rows if row.target is not None]
-    return sum(row.holds for row in asked), len(asked), shortfall
+    aimed = [row for row in rows if row.target is not None]
+    return sum(row.holds for row in aimed), len(aimed), shortfall
 
 
 def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[str]:
-    """Trains every job, `at_once` of them in processes of their own; each ends in its checkpoint.
+    """Trains every job, `at_once` of them in processes of their own; each writes a last checkpoint.
 
     Returns:
         One line for each run that failed; the others ran to their end.
@@ -129,51 +127,88 @@ def train_side_by_side(jobs: Sequence[Job], at_once: int, tell: Tell) -> list[st
     Raises:
         InterruptedRunError: Ctrl-C; every run that had begun has its checkpoint.
     """
-    failures: list[str] = []
     if at_once == 1 or len(jobs) == 1:
-        for job in jobs:
-            try:
-                train(job, tell)
-            except InterruptedRunError:
-                raise
-            except (TilencaError, OSError) as error:
-                failures.append(f"seed {job.config.seed}: {error}")
-        return failures
-    context = multiprocessing.get_context("spawn")
-    waiting = list(jobs)
-    running: dict[Connection, SpawnProcess] = {}
+        return _train_in_turn(jobs, tell)
+    waiting, processes = list(jobs), _Processes(tell)
     with _interruptible() as interrupted:
-        while waiting or running:
-            while waiting and len(running) < at_once and not interrupted():
-                job = waiting.pop(0)
-                ours, theirs = context.Pipe(duplex=False)
-                process = context.Process(target=_in_process, args=(job, theirs), daemon=True)
-                with _deaf_to_ctrl_c():  # until it can save its work, the parent stops it
-                    process.start()
-                theirs.close()
-                running[ours] = process
-            for connection in wait(list(running), timeout=0.5):
-                assert isinstance(connection, Connection)
-                try:
-                    news = connection.recv()
-                except EOFError:
-                    process = running.pop(connection)
-                    process.join()
-                    if process.exitcode and not interrupted():
-                        failures.append(f"a training process ended with {process.exitcode}")
-                    continue
-                if isinstance(news, Progress):
-                    tell(news)
-                else:
-                    failures.append(news)
+        while waiting or processes.running:
+            while waiting and len(processes.running) < at_once and not interrupted():
+                processes.start(waiting.pop(0))
+            processes.listen(interrupted)
             if interrupted():
                 waiting.clear()
-                for process in running.values():
-                    if process.pid is not None and process.is_alive():
-                        os.kill(process.pid, signal.SIGTERM)
+                processes.stop()
         if interrupted():
             raise InterruptedRunError("while training")
+    return processes.failures
+
+
+def _train_in_turn(jobs: Sequence[Job], tell: Tell) -> list[str]:
+    """Trains one job after the other in this process; returns a line for each that failed."""
+    failures = []
+    for job in jobs:
+        try:
+            train(job, tell)
+        except InterruptedRunError:
+            raise
+        except (TilencaError, OSError) as error:
+            failures.append(_failure(job, error))
     return failures
+
+
+def _failure(job: Job, error: Exception) -> str:
+    return f"seed {job.config.seed}: {error}"
+
+
+class _Processes:
+    """Processes that train one job each and report through a connection.
+
+    Attributes:
+        running: the processes, by the connection that each reports through.
+        failures: one line for each that failed.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self.running: dict[Connection, SpawnProcess] = {}
+        self.failures: list[str] = []
+        self._tell = tell
+        self._context = multiprocessing.get_context("spawn")
+
+    def start(self, job: Job) -> None:
+        """Starts the process of a job."""
+        ours, theirs = self._context.Pipe(duplex=False)
+        process = self._context.Process(target=_in_process, args=(job, theirs), daemon=True)
+        with _deaf_to_ctrl_c():  # until it can save its work, the parent stops it
+            process.start()
+        theirs.close()
+        self.running[ours] = process
+
+    def listen(self, interrupted: Callable[[], bool]) -> None:
+        """Waits half a second for reports, passes progress on, and notes failures and ends.
+
+        Args:
+            interrupted: whether the processes were stopped; then it is no failure that one ends early.
+        """
+        for connection in wait(list(self.running), timeout=0.5):
+            assert isinstance(connection, Connection)
+            try:
+                report = connection.recv()
+            except EOFError:
+                process = self.running.pop(connection)
+                process.join()
+                if process.exitcode and not interrupted():
+                    self.failures.append(f"a training process ended with {process.exitcode}")
+                continue
+            if isinstance(report, Progress):
+                self._tell(report)
+            else:
+                self.failures.append(report)
+
+    def stop(self) -> None:
+        """Lets every process save a checkpoint and end."""
+        for process in self.running.values():
+            if process.pid is not None and process.is_alive():
+                os.kill(process.pid, signal.SIGTERM)
 
 
 @contextmanager
@@ -186,21 +221,21 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _in_process(job: Job, connection: "Connection") -> None:
-    """The body of a process: progress goes through the connection, and so does a failure's text."""
+def _in_process(job: Job, connection: Connection) -> None:
+    """The body of a process: it sends its progress and a failure's text through the connection."""
     try:
         train(job, connection.send)
     except InterruptedRunError:
         pass
     except (TilencaError, OSError) as error:
-        connection.send(f"seed {job.config.seed}: {error}")
+        connection.send(_failure(job, error))
     finally:
         connection.close()
 
 
 @contextmanager
 def _interruptible() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C waits for the end of the step, so that the checkpoint is whole; a second one does not."""
+    """Ctrl-C waits for the end of the step, so that the checkpoint is whole; a second one does not wait."""
     caught: list[int] = []
 
     def note(number: int, _frame: object) -> None:
@@ -208,7 +243,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         if number == signal.SIGINT:
             signal.signal(number, signal.default_int_handler)
 
-    # Signals that the parent process ignores (nohup) stay ignored, but for Ctrl-C.
+    # Signals that the parent process ignores (nohup) stay ignored, except Ctrl-C.
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:

@@ -1,7 +1,7 @@
 """The training loop: draw grids, run short rollouts, and pull the state of every cell towards its class.
 
-Reads top to bottom: `Trainer.step` is one optimiser step. Everything random comes from one numpy generator,
-whose state is part of a checkpoint, so a resumed run continues to the very bytes of an uninterrupted one.
+Read it from top to bottom: `Trainer.step` is one optimiser step. All random numbers come from one numpy
+generator, whose state is part of a checkpoint, so a resumed run ends with the bytes of an uninterrupted one.
 """
 
 import math
@@ -20,6 +20,7 @@ from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.curriculum import Curriculum
+from tilenca.training.loss import Goal, loss_of, scores_of
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
@@ -28,7 +29,7 @@ from tilenca.training.rollout import rollout
 from tilenca.training.update_schedule import draw_schedule
 
 TILES_PER_ROLLOUT, LONGEST_ROLLOUT = 16, 2.0
-HISTORY_ROWS, HISTORY_EVERY = 200, 100  # so many rows at least, one for so many iterations at most
+HISTORY_ROWS, HISTORY_EVERY = 200, 100  # least number of rows, and most iterations per row
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Config:
     sources: tuple[dict[str, str], ...]
 
     def as_json(self) -> dict[str, Any]:
-        """Plain values, as JSON reads them back; without what does not touch the weights."""
+        """Plain values, as JSON reads them back; without settings that do not touch the weights."""
         recipe = {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self.recipe).items()}
         del recipe["validation_runs"]
         return {
@@ -60,12 +61,12 @@ class Trained:
 
     Attributes:
         config: of the run.
-        weights: the best, float32 by name, as `Model.floats` wants them.
+        weights: the best ones, float32 by name, for `Model.floats`.
         best_iteration: the iteration of these weights.
         iteration: how many iterations were done.
-        ended: whether it ended before the last one, since all targets held.
+        ended: whether it ended before the last iteration, since all targets held.
         history: (iteration, loss, agreement), means since the row before.
-        checks: (iteration, shortfall, smallest share by kind of question) of the short measurements.
+        checks: (iteration, shortfall, smallest share by kind of measurement) of the short measurements.
         done: whether there is nothing left to train.
     """
 
@@ -125,7 +126,7 @@ class Trainer:
         return self.ended or self.iteration >= self.config.recipe.iterations
 
     def recent(self) -> tuple[float, float]:
-        """Mean loss and agreement of the last iterations, to be shown."""
+        """Mean loss and agreement of the last iterations, for display."""
         if not self._since:
             return self.history[-1][1:] if self.history else (math.nan, math.nan)
         losses, agreements = zip(*self._since, strict=True)
@@ -145,19 +146,15 @@ class Trainer:
 
         start = torch.from_numpy(taken.states).to(self.device)
         end = rollout(self.net, start * self.net.units, schedule) / self.net.units
-        target = torch.from_numpy(batch.target).to(self.device)
-        scores = end[:, -len(self.config.labels) :]
-        wanted = torch.nn.functional.one_hot(target, scores.shape[1]).to(scores.dtype)
-        counts = torch.from_numpy(taken.asked[batch.sample]).to(self.device)
-        loss = ((scores - wanted).square().sum(dim=1) * counts).mean()
-        if recipe.stability_penalty > 0:
-            # Only where every tile is right: a converged wrong answer must stay free to change.
-            still = torch.from_numpy(taken.converged[batch.sample]).to(self.device)
-            still &= scores.argmax(dim=1) == target
-            loss = loss + recipe.stability_penalty * ((end - start).square().sum(dim=1) * still).mean()
+        target, counted, converged = (
+            torch.from_numpy(array).to(self.device)
+            for array in (batch.target, taken.counted[batch.sample], taken.converged[batch.sample])
+        )
+        goal = Goal(len(self.config.labels), target, counted, converged)
+        loss = loss_of(start, end, goal, recipe.stability_penalty)
 
         self._descend(loss)
-        right = _all_right(scores, target, batch)
+        right = _all_right(scores_of(end, goal.classes), target, batch)
         self.pools.give_back(taken, end.detach().cpu().numpy(), lengths, right)
         self.iteration += 1
         if recipe.refresh_every and self.iteration % recipe.refresh_every == 0:

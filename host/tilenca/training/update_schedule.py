@@ -4,8 +4,8 @@ Both schedules become the same list of updates, so that one loop trains on a mix
 
 - the paper's sampler: in every tick each tile updates with the sample's fire rate, and its neighbours receive
   the message at once;
-- the tiles' own clocks: each tile updates once per period at its own phase, its period slightly its own, and
-  its neighbours read the last message, a little after it was sent.
+- the tiles' own clocks: each tile updates once per period, with a phase and a slightly different period of
+its own, and its neighbours read its last message a little after it was sent.
 """
 
 from collections.abc import Iterator
@@ -28,9 +28,10 @@ class UpdateSchedule:
     Attributes:
         counts: (T,) int64, updates of each tick.
         updating: (E,) int32, the cell of each update, tick by tick.
-        reads: (E, 5) int32, the rows it perceives of a table of messages: own 0..N-1, as neighbours have
-            received them N..2N-1, 2N for an absent neighbour, or for a message that is lost.
-        arrives: (T, N) bool, at the end of the tick the neighbours receive the cell's message of that moment.
+        reads: (E, 5) int32, the rows that it perceives of a table of messages: 0..N-1 are the cells' own,
+            N..2N-1 are those that neighbours have received, 2N stands for an absent neighbour and for a lost
+            message.
+        arrives: (T, N) bool, whether neighbours receive the cell's current message at the end of the tick.
         starts: (B,) int64, the first cell of each of B independent samples.
     """
 
@@ -76,7 +77,7 @@ class UpdateSchedule:
 
 @dataclass(frozen=True)
 class Circumstances:
-    """What happens to B samples of N cells during a rollout.
+    """The circumstances of B samples of N cells during a rollout.
 
     Attributes:
         staggered: (B,) samples whose tiles are switched on at any time within the rollout.
@@ -105,30 +106,13 @@ def draw_schedule(
         batch: B drawings of N cells in all.
         lengths: (B,) ticks of each sample's rollout; T is the longest.
         random: the only source of chance.
-        given: what else happens to the samples.
+        given: the other circumstances of the samples.
     """
-    samples, cells, ticks = len(batch.starts), len(batch.sample), int(lengths.max())
+    cells, ticks = len(batch.sample), int(lengths.max())
     length = lengths[batch.sample]
-
-    def share(most: float, affected: float) -> NDArray[np.float64]:
-        """(B,) share of its messages that each sample loses; 0 in lossless samples."""
-        return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.lossless
-
-    now = np.arange(ticks)[:, None]
-    rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
-    fires = random.random((ticks, cells), dtype=np.float32) < rate.astype(np.float32)
-    arrives = np.ones((ticks, cells), dtype=np.bool_)
-    strict = np.zeros(cells, np.bool_)  # a cell none of whose messages has arrived is absent
-    if recipe.clocks > 0:
-        strict = (random.random(samples) < recipe.clocks)[batch.sample]
-        on_clock = np.flatnonzero(strict)
-        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, ticks, random)
-    if recipe.stale > 0:
-        stale = share(recipe.max_stale, recipe.stale)
-        strict |= stale[batch.sample] > 0
-        some = np.flatnonzero(stale[batch.sample])
-        arrives[:, some] &= random.random((ticks, len(some)), dtype=np.float32) >= stale[batch.sample[some]]
+    fires, arrives, strict = _draw_ticks(recipe, batch, ticks, random, given)
     boot = np.where(given.away, length, random.integers(0, length) * given.staggered[batch.sample])
+    now = np.arange(ticks)[:, None]
     fires &= (now < length) & (now >= boot)
     when, updating = np.nonzero(fires)
     neighbours = batch.neighbours[updating]
@@ -136,16 +120,80 @@ def draw_schedule(
     if known.any():
         neighbours[np.append(known, 0)[neighbours] > when[:, None]] = cells
     if recipe.lossy > 0:
-        loss = share(recipe.max_loss, recipe.lossy)
-        lasts = random.integers(1, recipe.longest_loss + 1, samples)
-        fate = random.random((ticks, cells, 4), dtype=np.float32)[
-            when // lasts[batch.sample][updating], updating
-        ]
-        neighbours[fate < loss[batch.sample][updating, None]] = cells
+        neighbours[_draw_losses(recipe, batch, (when, updating), ticks, random, given)] = cells
     reads = np.concatenate((updating[:, None], neighbours + cells), axis=1).astype(np.int32)
     return UpdateSchedule(
         np.bincount(when, minlength=ticks), updating.astype(np.int32), reads, arrives, batch.starts
     )
+
+
+def _draw_ticks(
+    recipe: Recipe, batch: Batch, ticks: int, random: np.random.Generator, given: Circumstances
+) -> tuple[Flags, Flags, Flags]:
+    """Draws the ticks in which cells fire and in which their messages arrive, as if all were switched on.
+
+    Returns:
+        (T, N) fires, (T, N) arrives, and (N,) strict: a strict cell is absent for its neighbours until they
+        have received one of its messages.
+    """
+    samples, cells = len(batch.starts), len(batch.sample)
+    rate = random.uniform(*recipe.fire_rate, samples)[batch.sample]
+    fires = random.random((ticks, cells), dtype=np.float32) < rate.astype(np.float32)
+    arrives = np.ones((ticks, cells), dtype=np.bool_)
+    strict = np.zeros(cells, np.bool_)
+    if recipe.clocks > 0:
+        strict = (random.random(samples) < recipe.clocks)[batch.sample]
+        on_clock = np.flatnonzero(strict)
+        fires[:, on_clock], arrives[:, on_clock] = _clocks(recipe, batch, on_clock, ticks, random)
+    if recipe.stale > 0:
+        stale = _draw_shares(recipe.max_stale, recipe.stale, random, given)
+        strict |= stale[batch.sample] > 0
+        some = np.flatnonzero(stale[batch.sample])
+        arrives[:, some] &= random.random((ticks, len(some)), dtype=np.float32) >= stale[batch.sample[some]]
+    return fires, arrives, strict
+
+
+def _draw_losses(
+    recipe: Recipe,
+    batch: Batch,
+    updates: tuple[NDArray[np.int64], NDArray[np.int64]],
+    ticks: int,
+    random: np.random.Generator,
+    given: Circumstances,
+) -> Flags:
+    """(E, 4) the neighbours' messages that are lost for each update; a loss lasts for some ticks.
+
+    Args:
+        recipe: the shares.
+        batch: the drawings.
+        updates: (E,) the tick and (E,) the cell of each update.
+        ticks: T.
+        random: the only source of chance.
+        given: the samples that lose no message.
+    """
+    when, updating = updates
+    loss = _draw_shares(recipe.max_loss, recipe.lossy, random, given)
+    lasts = random.integers(1, recipe.longest_loss + 1, len(batch.starts))
+    fate = random.random((ticks, len(batch.sample), 4), dtype=np.float32)[
+        when // lasts[batch.sample][updating], updating
+    ]
+    lost: Flags = fate < loss[batch.sample][updating, None]
+    return lost
+
+
+def _draw_shares(
+    most: float, affected: float, random: np.random.Generator, given: Circumstances
+) -> NDArray[np.float64]:
+    """(B,) share of its messages that each sample loses; 0 where it is lossless or not affected.
+
+    Args:
+        most: the largest share.
+        affected: the share of samples that are affected.
+        random: the only source of chance.
+        given: the samples that lose no message.
+    """
+    samples = len(given.lossless)
+    return random.uniform(0, most, samples) * (random.random(samples) < affected) * ~given.lossless
 
 
 def _first_received(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
@@ -158,7 +206,7 @@ def _first_received(fires: Flags, arrives: Flags) -> NDArray[np.int64]:
 def _clocks(
     recipe: Recipe, batch: Batch, updating: NDArray[np.int64], ticks: int, random: np.random.Generator
 ) -> tuple[Flags, Flags]:
-    """(T, cells in `updating`) when those cells update, and when their message of that moment arrives."""
+    """(T, cells in `updating`) when those cells update, and when their current message arrives."""
     period = random.uniform(*recipe.ticks_per_period, len(batch.starts))[batch.sample[updating]]
     period = period * (1 + random.uniform(-recipe.drift, recipe.drift, len(updating)))
     phase = random.random(len(updating))

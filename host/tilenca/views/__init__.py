@@ -1,1 +1,1 @@
-"""What people look at: tables, progress bars, pictures of tiles, plots and films."""
+"""Everything that a person sees: tables, progress bars, pictures of tiles, plots and films."""

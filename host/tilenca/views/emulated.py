@@ -1,4 +1,4 @@
-"""What emulated tiles show, and whether that is right."""
+"""The displays of emulated tiles, and a verdict on them."""
 
 from tilenca.emulator.experiment import Emulation
 from tilenca.shapes.file import UNKNOWN, Task
@@ -6,7 +6,7 @@ from tilenca.views.tiles import Picture
 
 
 def take_picture(emulation: Emulation) -> Picture:
-    """What the pins of all tiles say now."""
+    """A picture of all displays, read from the tiles' pins."""
     tiles = list(emulation.array)
     return Picture(emulation.shape, tuple(t.segments for t in tiles), tuple(t.rgb for t in tiles))
 
@@ -33,7 +33,7 @@ def verdict(emulation: Emulation) -> str:
 
 
 def mismatch(emulation: Emulation, task: Task) -> str | None:
-    """What to do if wrong tiles run a model of other shapes; None if nothing says that they do."""
+    """The remedy if wrong tiles run a model of other shapes; None without a sign of that."""
     hello = emulation.hello
     foreign = {emulation.shown(tile) for tile in emulation.array} - {"", UNKNOWN, *task.labels}
     classes = len(task.labels), len({*task.labels, UNKNOWN})

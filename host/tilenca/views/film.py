@@ -11,7 +11,7 @@ from tilenca.shapes.glyphs import SEGMENT_NAMES, look_of_class, screen_colour
 from tilenca.simulator.trace import NOTHING, Film
 from tilenca.views.plots import FAINT, INK, WIDTH_IN, save, styled, unwritable
 
-# After plots, which says what to do where matplotlib is missing.
+# After plots, which names the remedy where matplotlib is missing.
 from matplotlib.axes import Axes  # isort: skip
 from matplotlib.collections import PolyCollection  # isort: skip
 from matplotlib.figure import Figure  # isort: skip
@@ -65,7 +65,7 @@ def segment(name: str) -> list[Point]:
 
 
 def luminance(colour: tuple[float, float, float]) -> float:
-    """How bright a colour (RGB, 0..1 each) looks, 0..1."""
+    """The luminance (0..1) of a colour (RGB, 0..1 each)."""
     red, green, blue = (math.pow(part, 2.2) for part in colour)
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
@@ -151,7 +151,7 @@ def _title(figure: Figure, film: Film) -> None:
 
 
 def panels_of(steps: int) -> NDArray[np.int64]:
-    """The steps that a picture shows: all, or as many as there is room for, denser at the beginning."""
+    """The steps that a picture shows: all, or as many as fit, denser at the beginning."""
     if steps < MAX_PANELS:
         return np.arange(steps + 1)
     return np.unique((np.linspace(0, 1, MAX_PANELS) ** 2 * steps).round().astype(np.int64))
@@ -172,7 +172,7 @@ def draw_strip(film: Film, path: Path) -> int:
     across = math.ceil(len(steps) / bands)
     with styled():
         figure = Figure(figsize=(WIDTH_IN, TITLE_IN + bands * high))
-        # What is left over of the width goes between the panels.
+        # The rest of the width goes between the panels.
         spread = usable / across
         _title(figure, film)
         for number, step in enumerate(steps):

@@ -1,4 +1,4 @@
-"""What a person sees while boards are programmed: a bar for each and one for all, or plain lines."""
+"""The progress of programming boards: a bar for each and one for all, or plain lines."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -29,13 +29,13 @@ LEAST_TITLE = 12
 
 
 class Display(Protocol):
-    """Shows how far boards are."""
+    """Shows the progress of boards."""
 
     def show(self, name: str, progress: Progress) -> None:
-        """The board at port `name` is so far."""
+        """Shows the progress of the board at port `name`."""
 
     def done(self, name: str, result: str, error: str | None) -> None:
-        """Nothing more happens to it in this run."""
+        """The board is finished in this run."""
 
 
 class _Lines:
@@ -89,14 +89,14 @@ class _BoardBars:
 
 
 def ending(title: str, room: int) -> str:
-    """As much of a title as there is room for: its end, which tells one board from another."""
+    """As much of a title as fits: its end, which tells one board from another."""
     room = max(room, LEAST_TITLE)
     return title if len(title) <= room else "..." + title[3 - room :]
 
 
 @contextmanager
 def display(titles: Mapping[str, str]) -> Iterator[Display]:
-    """Shows progress on stderr while the block runs; `titles` say what to call each port."""
+    """Shows progress on stderr while the block runs; `titles` are the names of the ports."""
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal or console.is_dumb_terminal:
         yield _Lines(titles)

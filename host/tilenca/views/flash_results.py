@@ -1,4 +1,4 @@
-"""What became of each board that was flashed, as a table or a document."""
+"""The outcome of each board that was flashed, as a table or a document."""
 
 import json
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ HEADER = ("PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY")
 
 @dataclass
 class FlashRow:
-    """What became of one tile: `board` is what `tiles.toml` calls it, `firmware_id` what it says it runs."""
+    """The outcome of one tile: `board` is its name in `tiles.toml`, `firmware_id` the firmware it reports."""
 
     port: str | None
     result: str = "interrupted"
@@ -26,25 +26,25 @@ class FlashRow:
     firmware_id: str | None = None
 
     def end(self, result: str, error: str | None = None) -> None:
-        """Sets what became of it."""
+        """Sets the outcome."""
         self.result, self.error = result, error
 
     def hear(self, answer: Answer) -> None:
-        """Takes what the tile says of itself."""
+        """Takes the tile's own greeting."""
         if answer.hello:
             self.firmware_id = f"{answer.hello.firmware_id:08X}"
             self.tile = self.tile or answer.hello.tile or None
 
     @property
     def cells(self) -> list[str]:
-        """Its row under HEADER; there are no seconds where avrdude was never started."""
+        """Its row under HEADER; without seconds if avrdude was never started."""
         seconds = f"{self.seconds:.1f}" if self.attempts else "-"
         tile = str(self.tile or "-")
         return [self.port or "-", tile, self.result, seconds, self.firmware_id or "-", self.error or ""]
 
 
 def tell(rows: Sequence[FlashRow], as_json: bool) -> None:
-    """Prints what became of them, and how many were flashed."""
+    """Prints the outcomes, and how many boards were flashed."""
     if as_json:
         print(json.dumps({"tiles": [vars(row) for row in rows]}, indent=2))
     elif rows:

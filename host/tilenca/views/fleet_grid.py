@@ -53,7 +53,7 @@ def short(number: int | None) -> str:
 
 
 def age_text(age_s: float | None) -> str:
-    """An age in at most four characters; "" for what is fresh."""
+    """An age in at most four characters; "" for a fresh one."""
     if age_s is None or age_s < STALE_S:
         return ""
     if age_s < 100:
@@ -64,7 +64,7 @@ def age_text(age_s: float | None) -> str:
 def draw_fitting(
     grid: Mapping[Position, Cell], width: int, height: int, ascii_only: bool
 ) -> list[Text] | None:
-    """The larger of `full` and `small` that fits; None if neither does. Nothing is drawn in vain."""
+    """The larger of `full` and `small` that fits; None if neither does. Draws only as much as needed."""
     if not grid:
         return []
     rows, cols = _extent(row for row, _ in grid), _extent(col for _, col in grid)

@@ -1,4 +1,4 @@
-"""The monitor's live picture: a line about all tiles, the tiles in their places, the log of what happens."""
+"""The monitor's live picture: a line about all tiles, the tiles in their places, the log."""
 
 import time
 from collections import Counter, deque
@@ -27,9 +27,9 @@ class LiveView:
     """Shows the fleet on a terminal; enter `live` while it does."""
 
     def __init__(self, fleet: Fleet, grid: Grid, console: Console, table: bool, about: str = "") -> None:
-        """Will draw the grid, or with `table` one line per port; `about` says what is replayed.
+        """Draws the grid, or with `table` one line per port; `about` names the recording.
 
-        `footer` may be set, to a function that gives what is to stand below.
+        `footer` may be set to a function that gives the line below.
         """
         self._fleet, self._grid, self._table, self._about = fleet, grid, table, about
         self._console = console
@@ -42,7 +42,7 @@ class LiveView:
         self.live = Live(console=console, auto_refresh=False, get_renderable=lambda: _Screen(self))
 
     def show(self, now_s: float, events: Sequence[Event]) -> None:
-        """Takes what is new; draws now and then, and at once after a pause."""
+        """Takes new events; draws at intervals, and at once after a pause."""
         self._now_s = now_s
         for event in events:
             self._log.extend(self._reporter.take(event))
@@ -51,7 +51,7 @@ class LiveView:
             self.live.refresh()
 
     def begin_again(self) -> None:
-        """Forgets all that was shown: it is played from the beginning."""
+        """Forgets everything shown: the recording starts again."""
         self._fleet.tiles.clear()
         self._reporter = Reporter(self._fleet)
         self._log.clear()
@@ -100,12 +100,12 @@ class LiveView:
         return Text("  ".join(filter(None, parts)), style="bold")
 
     def _log_line(self, news: News) -> Text:
-        # The folder of a port tells nothing, and on a narrow terminal hides what is told.
+        # The folder of a port tells nothing, and takes the room of the rest on a narrow terminal.
         return Text(news_line(news, PurePath(news.port).name), "yellow" if news.bad else "")
 
 
 class _Screen:
-    """What Live draws: as much as fits the terminal as it is now."""
+    """The picture for Live: as much as fits the terminal's current size."""
 
     def __init__(self, view: LiveView) -> None:
         self._view = view

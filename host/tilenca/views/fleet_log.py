@@ -1,4 +1,4 @@
-"""What the monitor shows where there is no picture: a line for each event, for what is new, or as JSON."""
+"""The monitor's output without a picture: a line for each event, for each change, or JSON."""
 
 import json
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from tilenca.views.fleet_table import log_line
 
 
 class Lines:
-    """Shows a fleet's events on stdout, those of a recording from `start_s` after its first on."""
+    """Shows a fleet's events on stdout; those of a recording begin `start_s` after its first."""
 
     def __init__(self, start_s: float) -> None:
         self._start_s = start_s
@@ -52,7 +52,7 @@ class EventLines(Lines):
 
 
 class NewsLines(Lines):
-    """What is new as a line on stdout: the log that stands below the picture."""
+    """Each change as a line on stdout: the log that stands below the picture."""
 
     def __init__(self, start_s: float, fleet: Fleet) -> None:
         super().__init__(start_s)

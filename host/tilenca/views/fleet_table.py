@@ -1,4 +1,4 @@
-"""What the monitor shows: events as log lines, the fleet as a table. Pure: events in, text out."""
+"""The monitor's text: events as log lines, the fleet as a table. Pure: events in, text out."""
 
 from collections.abc import Iterable
 
@@ -15,7 +15,7 @@ from tilenca.views.table import table
 
 
 def log_line(event: Event) -> str:
-    """One event as one line: time, port, tile, what it says."""
+    """One event as one line: time, port, tile, words."""
     head = f"{clock_text(event.time_s)} {event.port}"
     if isinstance(event, PortNews):
         return f"{head} - PORT {port_words(event)}"
@@ -41,7 +41,7 @@ HEADER = (
 
 
 def cells(view: TileView, now_s: float) -> list[str]:
-    """One tile's row under HEADER; `-` for what is not known."""
+    """One tile's row under HEADER; `-` for an unknown value."""
     age_s = None if view.heard_s is None else max(now_s - view.heard_s, 0.0)
     state = view.tile
     counters = [view.total(counter) for counter in ("received", "corrupt", "lost")]
@@ -85,7 +85,7 @@ def live_table(fleet: Fleet, now_s: float, overflow: OverflowMethod = "ellipsis"
 
 
 def summary(tiles: Iterable[TileView]) -> str:
-    """What was heard, one row per port."""
+    """The sentences of each port, one row per port."""
     rows = [
         [
             view.port,

@@ -1,4 +1,4 @@
-"""Keys as they are typed, without Enter; however the program ends or stops, the terminal is as it was."""
+"""Keys as they are typed, without Enter; the terminal is restored however the program ends or stops."""
 
 import os
 import re
@@ -23,7 +23,7 @@ ARROWS = {b"A": "up", b"B": "down", b"C": "right", b"D": "left"}
 
 
 def parse_keys(data: bytes) -> tuple[list[str], bytes]:
-    """What a terminal has sent: characters, `up`, `down`, `left`, `right`; and the rest, if unfinished."""
+    """The keys in a terminal's bytes: characters, `up`, `down`, `left`, `right`; and an unfinished rest."""
     keys = []
     for found in _KEY.finditer(data):
         if found["arrow"]:
@@ -36,7 +36,7 @@ def parse_keys(data: bytes) -> tuple[list[str], bytes]:
 
 
 def is_ours(descriptor: int) -> bool:
-    """Whether it is a terminal whose keys are for this program, which is not in the background."""
+    """Whether it is a terminal and this program is in its foreground, so that the keys are for it."""
     if not os.isatty(descriptor):
         return False
     try:
@@ -49,7 +49,7 @@ class Keyboard:
     """A terminal's keys; use it as a context manager."""
 
     def __init__(self, descriptor: int, screen: int) -> None:
-        """Will read from a terminal that `is_ours`; on that of `screen` somebody hides the cursor."""
+        """Prepares to read from a terminal that `is_ours`; the cursor on `screen` is hidden by the caller."""
         self._descriptor, self._screen = descriptor, screen
         self._before = termios.tcgetattr(descriptor)
         self._taken = False
@@ -57,7 +57,7 @@ class Keyboard:
 
     def __enter__(self) -> Self:
         self._take()
-        # Ctrl-Z and Ctrl-\ give the terminal back before they do what they always do.
+        # Ctrl-Z and Ctrl-\ give the terminal back before their usual action.
         self._handlers = {
             number: signal.signal(number, handler)
             for number, handler in (

@@ -1,6 +1,6 @@
-"""Pictures for reports: how training went, and what tiles show while they find out. Needs matplotlib.
+"""Pictures for reports: the course of a training, and the tiles while they converge. Needs matplotlib.
 
-The same data give the same bytes, whatever the user's own settings of matplotlib are.
+The same data give the same bytes, with any settings of the user's matplotlib.
 """
 
 import errno
@@ -82,7 +82,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def unwritable(path: Path, error: OSError) -> TilencaError:
-    """What to say of a picture that cannot be written: there is no room, or its place is a usage error."""
+    """The error for a picture that cannot be written: no room, or a usage error for its place."""
     if error.errno == errno.ENOSPC:
         return TilencaError(f"{path}: {error.strerror}; free some space and draw again")
     return UsageError(f"{path}: {error.strerror or error}; give a place that can be written")
@@ -156,7 +156,7 @@ def _question(name: str) -> str:
 def _draw_line(
     axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], number: int, label: str | None = None
 ) -> None:
-    """Every point faintly, and what they come to on average."""
+    """Every point faintly, and their running mean."""
     known = ~np.isnan(y)
     x, y = x[known], y[known]
     colour, dashes = LINES[number % len(LINES)], DASHES[number % len(DASHES)]

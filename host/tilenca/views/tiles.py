@@ -23,7 +23,7 @@ FRAME = f"rgb(88,88,88) {HOUSING}"
 
 @dataclass(frozen=True)
 class Picture:
-    """What the tiles of a shape show at one moment, in the order of `shape.cells`."""
+    """The displays of a shape's tiles at one moment, in the order of `shape.cells`."""
 
     shape: Shape
     segments: tuple[int, ...]

@@ -94,6 +94,19 @@ def test_it_carries_the_data_and_nothing_by_the_way(wheel: Path) -> None:
             assert archive.read(f"tilenca/data/image/firmware{suffix}") == built
 
 
+def test_without_the_firmware_no_wheel_is_built(tmp_path: Path) -> None:
+    shutil.copy(paths.ROOT / "CMakeLists.txt", tmp_path)
+    done = subprocess.run(
+        ["cmake", "-S", tmp_path, "-B", tmp_path / "build", "-DSKBUILD=2"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode != 0
+    assert "build the wheel with `make wheel`" in " ".join(done.stderr.split())
+
+
 def test_it_knows_its_version_and_no_checkout(plain: EmptyEnvironment, tmp_path: Path) -> None:
     assert plain.run(tmp_path, "tilenca", "--version").stdout == f"tilenca {__version__}\n"
     program = (

@@ -1,0 +1,98 @@
+"""The plan of `tilenca train`: the training that the arguments ask for, and whether it can begin."""
+
+import argparse
+from dataclasses import dataclass, replace
+
+from tilenca.base.errors import UsageError
+from tilenca.base.stdio import warn
+from tilenca.model import cost
+from tilenca.model.file import Dimensions, checkpoint_path, checkpoints
+from tilenca.shapes.batch import Drawings, load_training_task
+from tilenca.shapes.derive import known_of
+from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.sizes import Sizes
+from tilenca.training.curriculum import labels_of
+from tilenca.training.recipes import Recipe, find_recipe
+
+
+@dataclass(frozen=True)
+class TrainingPlan:
+    """The training that the arguments ask for.
+
+    Attributes:
+        task: the drawings of the files, with the model's labels.
+        sizes: of the task.
+        recipe: with the arguments' changes.
+        dimensions: of the network.
+        seeds: to train.
+        validation_runs: of each drawing in the final measurement.
+    """
+
+    task: Drawings
+    sizes: Sizes
+    recipe: Recipe
+    dimensions: Dimensions
+    seeds: tuple[int, ...]
+    validation_runs: int
+
+
+def make_plan(args: argparse.Namespace) -> TrainingPlan:
+    """The plan of the arguments, with the drawings of their files.
+
+    Raises:
+        UsageError: there is no such recipe, or a shape file is not valid.
+    """
+    recipe = find_recipe(args.recipe)
+    if args.iterations is not None:
+        recipe = replace(recipe, iterations=args.iterations)
+    hidden = args.hidden or recipe.hidden
+    dimensions = Dimensions(args.state, hidden, hidden)
+    task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
+    labels = labels_of(task, recipe, dimensions.max_classes)
+    seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
+    runs = args.validation_runs or recipe.validation_runs
+    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
+
+
+def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
+    """Prints the plan, the cost on a tile, and the drawings that look alike when damaged."""
+    warn(str(fits))
+    if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
+        warn(
+            f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
+            "tiles would learn to say that they do not know"
+        )
+    if plan.recipe.damaged:
+        known = known_of(plan.task.shapes)
+        doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
+        if doubts:
+            warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    warn(
+        f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
+        f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "
+        "a checkpoint"
+    )
+
+
+def check_out(args: argparse.Namespace, plan: TrainingPlan) -> None:
+    """Makes the output folder, unless it holds a model or a run that the arguments do not mean.
+
+    Raises:
+        UsageError: it does, or it cannot be written to.
+    """
+    unfinished = bool(checkpoints(args.out))
+    if (args.out / "model.json").exists() and not (args.resume or args.force):
+        raise UsageError(f"{args.out}: holds a model already; give another --out, or --force to replace it")
+    if unfinished and not (args.resume or args.force):
+        raise UsageError(
+            f"{args.out}: holds an unfinished run; add --resume to continue it, --force to start anew"
+        )
+    if args.resume and not any(checkpoint_path(args.out, number).exists() for number in plan.seeds):
+        raise UsageError(f"{args.out}: no checkpoint of this run to resume; train without --resume")
+    try:
+        args.out.mkdir(parents=True, exist_ok=True)
+        probe = args.out / ".write-probe"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise UsageError(f"{args.out}: cannot write there ({error.strerror}); give another --out") from error

@@ -1,0 +1,202 @@
+"""Measures a trained model: the same table of measurements for every recipe, on the firmware's own core."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tilenca.evaluation.metrics import Measurement, Runs, Target, measure, target_of
+from tilenca.evaluation.suites import Case, Suite
+from tilenca.simulator.engine import Engine
+from tilenca.simulator.simulator import Conditions, Fault, ScheduleKind, Simulator, Trajectory
+from tilenca.simulator.transitions import rebuild, rebuild_tile_by_tile
+
+MARKS = (10, 30, 60)  # steps after which agreement is reported
+CONVERGENCE_STEPS = (8, 14)  # steps within which half, and nearly all, of the runs are to converge
+CONVERGED_BY = MARKS[-1]  # from here on a wrong tile counts as a regression
+LONG = 1000
+LEAST_LASTING = 3000  # steps without a regression, in short measurements; slow drifts show after two thousand
+SCHEDULES: dict[ScheduleKind, str] = {"random": "the paper's sampler", "clock": "the tiles' own clocks"}
+CLOCK = Conditions("clock")
+FaultKind = Literal["dead", "stuck", "away"]
+Say = Callable[[str], None]
+# The faults to measure: name, kind, first step, step of its end, and the kind of the target.
+FAULTS: tuple[tuple[str, FaultKind, int, int | None, str | None], ...] = (
+    ("any one tile dead, the others asked", "dead", 0, None, None),
+    ("any one tile stuck after 5 steps, the others asked", "stuck", 5, None, None),
+    ("any one tile off from step 30 to 60, back again", "away", 30, CONVERGED_BY, "away"),
+)
+
+
+class Evaluator:
+    """Measures one model.
+
+    Args:
+        engine: the model's.
+        suite: the cases to measure.
+        runs: runs of each drawing; longevity takes a fifth of them over 20 steps for each.
+        seed: of the random generator.
+    """
+
+    def __init__(self, engine: Engine, suite: Suite, runs: int, seed: int) -> None:
+        self.engine, self.suite, self.runs = engine, suite, runs
+        self.random = np.random.default_rng(seed)
+
+    def short_rows(self) -> Iterator[Measurement]:
+        """The measurements during training: the clocks only, and nothing that takes long."""
+        yield from self.agreement({"clock": SCHEDULES["clock"]})
+        for part in (self.sizes, self.disturbed, self.unknown):
+            yield from part()
+        yield from self.changes(one_by_one=False)
+        yield from self.longevity()
+
+    def rows(self) -> Iterator[Measurement]:
+        """All measurements, in the order of the table."""
+        yield from self.agreement()
+        yield from self.sizes()
+        yield from self.disturbed()
+        yield from self.unknown()
+        yield from self.changes()
+        yield from self.longevity()
+
+    def agreement(self, schedules: Mapping[ScheduleKind, str] = SCHEDULES) -> Iterator[Measurement]:
+        """The files' drawings on both schedules, the first file's time to converge, and larger drawings."""
+        for case in self.suite.drawn:
+            for schedule, name in schedules.items():
+                runs = self._run(case, Conditions(schedule), CONVERGED_BY)
+                for mark in MARKS:
+                    target = target_of(case.kind) if mark > MARKS[0] else None
+                    yield measure("drawings", f"{case.name}, {name}", runs, mark, target)
+                if case is self.suite.drawn[0] and schedule == "clock":
+                    yield from _convergence(runs)
+        for case in self.suite.larger:
+            runs = self._run(case, CLOCK, case.steps)
+            yield measure("sizes", case.name, runs, case.steps, target_of(case.kind))
+
+    def sizes(self) -> Iterator[Measurement]:
+        """Other sizes."""
+        for case in self.suite.sizes:
+            each = self.runs if case.held_out else max(2, self.runs // 25)
+            runs = self._run(case, CLOCK, case.steps, each)
+            yield measure("sizes", case.name, runs, case.steps, _target_if_aimed(case))
+
+    def disturbed(self) -> Iterator[Measurement]:
+        """Lost messages, and tiles that are missing, dead, stuck, or away for a while."""
+        drawn = self.suite.drawn[0]
+        for name, conditions in (
+            ("20 % of the messages lost, read as zero", Conditions("clock", loss=0.2, lost="zero")),
+            ("50 % of the messages lost, last one held", Conditions("clock", loss=0.5, lost="held")),
+        ):
+            runs = self._run(drawn, conditions, CONVERGED_BY)
+            yield measure("lost", name, runs, CONVERGED_BY, target_of("lost"))
+        if (damaged := self.suite.damaged) is not None:
+            name = "one tile missing, where that leaves no doubt about the class"
+            runs = self._run(damaged, CLOCK, CONVERGED_BY, max(2, self.runs // 5))
+            yield measure("damaged", name, runs, CONVERGED_BY, _target_if_aimed(damaged))
+        large = [n for n, size in enumerate(drawn.drawings.sizes) if size > 1]
+        if large:  # without a single tile no tile is left to measure
+            yield from self._faults(replace(drawn, drawings=drawn.drawings.chosen(large)))
+
+    def _faults(self, case: Case) -> Iterator[Measurement]:
+        """One tile that is dead, stuck, or away for a while."""
+        chosen = self._every_drawing(case, self.runs)
+        for name, kind, begin, end, target in FAULTS:
+            fault = Fault(kind, self.random.integers(case.drawings.sizes[chosen]), begin, end)
+            changed_at = begin if end is None else end
+            mark = changed_at + CONVERGED_BY
+            runs = self._run(case, Conditions("clock", fault=fault), mark)
+            yield measure(
+                "faults", name, runs, mark, None if target is None else target_of(target), changed_at
+            )
+
+    def unknown(self) -> Iterator[Measurement]:
+        """Drawings of no class: a run is right if every tile shows the dash."""
+        for case in self.suite.unknown:
+            each = max(2, 10 * self.runs // len(case.drawings))
+            runs = self._run(case, CLOCK, case.steps, each)
+            yield measure("unknown", case.name, runs, case.steps, _target_if_aimed(case))
+
+    def changes(self, one_by_one: bool = True) -> Iterator[Measurement]:
+        """Every change from one class to another on running tiles, without a reset."""
+        drawn = self.suite.drawn[0]
+        for case, how, change, target in (
+            (drawn, "at once", rebuild, "switch"),
+            *(((drawn, "tile by tile", rebuild_tile_by_tile, "tile by tile"),) if one_by_one else ()),
+            *((case, "at once", rebuild, "larger switch") for case in self.suite.larger),
+        ):
+            each = max(1, self.runs // (10 if how == "at once" else 50))
+            changed = change(self.engine, case.drawings, each, CONVERGED_BY, case.steps, self.random)
+            if changed is not None:
+                trajectory, chosen = changed
+                name = f"{case.name}, changes to every other class {how}"
+                runs = Runs(case, chosen, trajectory)
+                yield measure("changes", name, runs, case.steps, target_of(target))
+
+    def longevity(self) -> Iterator[Measurement]:
+        """Long runs: all right after 1000 steps, and without a regression after convergence."""
+        drawn = self.suite.drawn[0]
+        runs = self._run(drawn, CLOCK, LONG, max(1, self.runs // 5))
+        name = f"{drawn.name}, {SCHEDULES['clock']}"
+        yield measure("longevity", name, runs, LONG, target_of("long"))
+        steps = max(LEAST_LASTING, 20 * self.runs)
+        for case in (self.suite.drawn[0], *self.suite.larger[-1:]):
+            each = max(1, -(-self.runs // (5 * len(case.drawings))))
+            runs = self._run(case, CLOCK, case.steps + steps, each)
+            always = Trajectory(runs.trajectory.right[case.steps - 1 :].min(axis=0, keepdims=True))
+            name = f"{case.name}, no regression in {steps} more steps"
+            row = measure("longevity", name, replace(runs, trajectory=always), 1, target_of("longevity"))
+            yield replace(row, steps=case.steps + steps, convergence=None)
+
+    def _run(self, case: Case, conditions: Conditions, steps: int, each: int | None = None) -> Runs:
+        """Runs every drawing of a case, `each` times or as often as the evaluator does."""
+        chosen = self._every_drawing(case, self.runs if each is None else each)
+        simulator = Simulator(self.engine, case.drawings, chosen, conditions, self.random)
+        return Runs(case, chosen, simulator.run(steps))
+
+    @staticmethod
+    def _every_drawing(case: Case, each: int) -> NDArray[np.int64]:
+        return np.repeat(np.arange(len(case.drawings)), each)
+
+
+def _convergence(runs: Runs) -> Iterator[Measurement]:
+    """The shares of the runs that have converged within certain numbers of steps."""
+    for steps in CONVERGENCE_STEPS:
+        soon = Trajectory((runs.trajectory.converged_at <= steps).astype(np.float32)[None])
+        name = f"{runs.case.name}, converged"
+        row = measure(
+            "convergence", name, replace(runs, trajectory=soon), 1, target_of(f"converged in {steps}")
+        )
+        yield replace(row, steps=steps, convergence=None)
+
+
+def _target_if_aimed(case: Case) -> Target | None:
+    return target_of(case.kind) if case.aimed else None
+
+
+def validate(engine: Engine, suite: Suite, runs: int, seed: int, say: Say = lambda _: None) -> dict[str, Any]:
+    """Measures a model.
+
+    Args:
+        engine: the model's.
+        suite: the cases to measure.
+        runs: runs of each drawing.
+        seed: of the random generator.
+        say: called with each row as soon as it is measured.
+
+    Returns:
+        Plain values for metrics.json: `rows` as of `Measurement`, and `shortfall`, the sum over all rows.
+    """
+    rows = []
+    for row in Evaluator(engine, suite, runs, seed).rows():
+        say(row.text())
+        rows.append(row)
+    return {
+        "runs_per_drawing": runs,
+        "seed": seed,
+        "rows": [row.as_json() for row in rows],
+        "targets_held": f"{sum(r.holds for r in rows if r.target is not None)} of "
+        f"{sum(r.target is not None for r in rows)}",
+        "shortfall": round(sum(row.shortfall for row in rows), 5),
+    }

@@ -1,0 +1,51 @@
+"""The plan of a training: refusals before it begins, and what is announced."""
+
+import argparse
+from pathlib import Path
+
+import pytest
+
+from tilenca.base.errors import UsageError
+from tilenca.commands import train
+from tilenca.commands.train_plan import announce, check_out, make_plan
+from tilenca.model import cost
+
+
+def arguments(out: Path, *more: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    train.add_arguments(parser)
+    return parser.parse_args(["--out", str(out), "--recipe", "smoke", *more])
+
+
+def test_arguments_change_the_recipe_and_the_network(tmp_path: Path) -> None:
+    more = ("--iterations", "7", "--hidden", "24", "--state", "16", "--seed", "3", "--seeds", "2")
+    plan = make_plan(arguments(tmp_path, *more))
+    assert plan.recipe.iterations == 7
+    assert (plan.dimensions.channels, plan.dimensions.hidden1, plan.dimensions.hidden2) == (16, 24, 24)
+    assert plan.seeds == (3, 4)
+    assert plan.task.labels == (*"0123456789", "-")
+
+
+def test_a_run_that_waits_to_be_resumed_is_not_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "checkpoint-1.pt").touch()
+    args = arguments(tmp_path)
+    with pytest.raises(UsageError, match="--resume"):
+        check_out(args, make_plan(args))
+    for option in ("--resume", "--force"):
+        args = arguments(tmp_path, option)
+        check_out(args, make_plan(args))
+
+
+def test_a_run_of_another_seed_cannot_be_resumed(tmp_path: Path) -> None:
+    (tmp_path / "checkpoint-1.pt").touch()
+    args = arguments(tmp_path, "--resume", "--seed", "2")
+    with pytest.raises(UsageError, match="no checkpoint of this run"):
+        check_out(args, make_plan(args))
+
+
+def test_lookalikes_are_announced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plan = make_plan(arguments(tmp_path))
+    announce(plan, cost.check(plan.dimensions, len(plan.task.labels)))
+    said = capsys.readouterr().err
+    assert "training 40 iterations on" in said
+    assert "with the wrong tile missing one looks like another" in said

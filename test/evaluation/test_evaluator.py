@@ -1,0 +1,54 @@
+"""The evaluator measures every case of a suite, on the shipped model."""
+
+from dataclasses import replace
+
+import pytest
+
+from tilenca.base import paths
+from tilenca.evaluation.evaluator import CONVERGED_BY, FAULTS, Evaluator, validate
+from tilenca.evaluation.suites import Suite, make_suite
+from tilenca.model.file import load_model
+from tilenca.shapes.batch import load_training_task
+from tilenca.simulator.engine import FastEngine
+from tilenca.training.recipes import RECIPES, aims_of
+
+MODEL = load_model(paths.DEFAULT_MODEL)
+
+
+@pytest.fixture(scope="module")
+def suite() -> Suite:
+    recipe = replace(RECIPES["full"], stretch=1.5)
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], recipe.stretch, 20)
+    return make_suite(replace(task, labels=MODEL.labels), sizes, MODEL.labels, aims_of(recipe), 1)
+
+
+def test_short_measurements_run_on_the_clocks_only_and_change_everything_at_once(suite: Suite) -> None:
+    suite = replace(suite, sizes=suite.sizes[:1], unknown=suite.unknown[:1], larger=())
+    short, full = (
+        [row.name for row in rows(Evaluator(FastEngine(MODEL), suite, 1, 1))]
+        for rows in (Evaluator.short_rows, Evaluator.rows)
+    )
+    left_out = [name for name in full if name not in short]
+    assert {name.split(", ")[-1] for name in left_out} == {
+        "the paper's sampler",
+        "changes to every other class tile by tile",
+    }
+    assert [name for name in full if name in short] == short
+
+
+def test_steps_of_a_fault_count_from_its_last_change(suite: Suite) -> None:
+    rows = [row for row in Evaluator(FastEngine(MODEL), suite, 3, 1).disturbed() if row.key == "faults"]
+    assert [row.name for row in rows] == [name for name, *_ in FAULTS]
+    for row in rows:
+        assert row.steps == CONVERGED_BY
+        assert row.runs == 3 * row.drawings
+    assert rows[-1].share > 0.9, "of these only a tile that was away is there again"
+
+
+def test_every_row_is_told_as_soon_as_it_is_measured(suite: Suite) -> None:
+    only_drawn = replace(suite, sizes=(), damaged=None, unknown=(), larger=())
+    said: list[str] = []
+    metrics = validate(FastEngine(MODEL), only_drawn, 1, 1, said.append)
+    assert [line.split(", @")[0] for line in said] == [row["name"] for row in metrics["rows"]]
+    aimed = [row for row in metrics["rows"] if row["target"] is not None]
+    assert metrics["targets_held"] == f"{sum(row['holds'] for row in aimed)} of {len(aimed)}"

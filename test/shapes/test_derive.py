@@ -1,0 +1,55 @@
+"""Shapes derived from a task's shapes, for training and for test suites."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tilenca.shapes import variants
+from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
+from tilenca.shapes.file import Shape
+from tilenca.shapes.stretch import Rows, smallest
+
+ONE, SEVEN = Shape("1", ("#", "#", "#"), "1"), Shape("7", ("###", "..#", "..#"), "7")
+TASK = [ONE, SEVEN]
+
+
+def strokes(seed: int = 1) -> Callable[[], Rows | None]:
+    return variants.some_strokes([("###", "#.#", "###")], np.random.default_rng(seed))
+
+
+def test_shapes_at_another_size_leave_out_those_that_cannot_be_drawn_that_small() -> None:
+    assert [shape.rows for shape in at_size(TASK, (2, 2))] == [("#", "#"), ("##", ".#")]
+    u = Shape("U", ("#.#", "#.#", "###"), "U")
+    assert at_size([ONE, u], (2, 2)) == at_size([ONE], (2, 2))
+
+
+def test_every_size_comes_rounded_up_and_rounded_down() -> None:
+    letter = Shape("F", ("##", "#.", "##", "#."), "F")
+    up, down = at_sizes([letter], [(5, 2)])
+    assert (up, down) == (at_size([letter], (5, 2), up=True), at_size([letter], (5, 2), up=False))
+
+
+def test_a_damaged_shape_keeps_its_label_and_looks_like_no_other() -> None:
+    zero = Shape("0", ("###", "#.#", "###"), "0")
+    found = damaged([zero, SEVEN], known_of([zero, *TASK]), " less one")
+    assert {(shape.label, shape.name) for shape in found} == {("0", "0 less one")}, "a short 7 is still a 7"
+    assert len(found) == 8, "every tile of a ring can go"
+
+
+@pytest.mark.parametrize("held_out", [False, True])
+def test_drawings_of_no_class_are_held_out_or_not_and_never_known(held_out: bool) -> None:
+    known = known_of(TASK)
+    found = draw_unknown(20, strokes(), known, held_out)
+    assert found
+    assert len(set(found)) == len(found)
+    for rows in found:
+        assert variants.held_out(rows) == held_out
+        assert not known.is_known(rows)
+
+
+def test_doubtful_drawings_are_excluded_at_every_size() -> None:
+    known = known_of(TASK)
+    first, *others = draw_unknown(20, strokes(), known, held_out=False)
+    without = draw_unknown(20, strokes(), known, held_out=False, doubtful={smallest(first)})
+    assert without == [rows for rows in others if smallest(rows) != smallest(first)]
