@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from support.emulate import emulate, report
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.emulator import Array, EmulatedTile
@@ -51,3 +52,18 @@ def test_a_place_that_is_no_folder_is_told_with_the_remedy(tile: EmulatedTile, t
         load_eeprom(tile, tmp_path / "file")
     with pytest.raises(UsageError, match="give --eeprom a directory that can be written"):
         save_eeprom(tile, tmp_path / "file")
+
+
+def test_an_eeprom_outlives_the_run(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    directory = tmp_path / "eeprom"
+    report(capsys, "--seconds", "0.2", "--period-ms", "250", "--eeprom", directory)
+    files = sorted(path.name for path in directory.iterdir())
+    assert files == [f"tile-0{n}.eeprom" for n in range(1, 6)]
+    assert all((directory / name).stat().st_size == 4096 for name in files)
+    # The period of the first run is still there.
+    slow = report(capsys, "--seconds", "3", "--boot-spread", "0", "--eeprom", directory)
+    assert all(tile["updates"] in (11, 12) for tile in slow["tiles"])
+    (directory / "tile-03.eeprom").write_bytes(b"short")
+    status, _, err = emulate(capsys, "--eeprom", directory)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "tile-03.eeprom: 5 bytes, an EEPROM has 4096; delete it" in err
