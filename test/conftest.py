@@ -31,6 +31,9 @@ def pytest_configure() -> None:
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // workers)))
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    # Programs go by the terminals that tests give them; the processes of pytest-xdist inherit another size.
+    for name in ("COLUMNS", "LINES"):
+        os.environ.pop(name, None)
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
 

@@ -7,73 +7,21 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from firmware.synthetic_models import random_network
 from support.reference_network import reference
 from support.reference_simulator import SlowRun
-from tilenca.model.file import Dimensions, Model
+from support.restless_grids import CONDITIONS, FAULTS, LETTERS, MODEL, TILES, PlainEngine, same, simulator
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
-from tilenca.simulator.engine import ExactEngine, FastEngine, States
+from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.simulator import Conditions, Fault, Simulator, Trajectory
 
 CLASSES = 3
-CHANNELS = 6
-
-
-def restless_model() -> Model:
-    """A network that never comes to rest: each state swings around zero, driven by what the neighbours do."""
-    random = random_network(Dimensions(CHANNELS, 4 * CHANNELS, 4 * CHANNELS), 40, seed=5)
-    integer = {name: array.copy() for name, array in random.integer.items()}
-    swing = np.arange(2 * CHANNELS)  # the units that hold the own message's parts above and below zero
-    own, sign = swing // 2, 1 - 2 * (swing % 2)
-    for name in ("w1", "w2"):
-        integer[name][swing] = 0
-    integer["w1"][2 * CHANNELS :, :CHANNELS] = 0  # all others listen to the neighbours
-    integer["w1"][swing, own] = 127 * sign
-    integer["w2"][swing, swing] = 64
-    integer["w3"][own, swing] = -120 * sign
-    for name in ("b1", "b2", "b3"):
-        integer[name] //= 20
-    return replace(random, labels=("0", "1", "2"), integer=integer)
-
-
-MODEL = restless_model()
-LETTERS = Drawings(
-    (
-        Shape("0", ("###", "#.#", "###"), "0"),
-        Shape("1", ("#", "#", "#"), "1"),
-        Shape("2", ("##.", ".##"), "2"),
-    ),
-    (0, 0, 0), ("0", "1", "2"), ({"file": "letters.toml", "sha256": ""},),
-)  # fmt: skip
-
-
-class PlainEngine(ExactEngine):
-    """The arithmetic in numpy, so that `Simulator` goes round by round."""
-
-    def update(self, states: States, seen: States) -> States:
-        return reference(self.model, states, seen).astype(np.int16)
 
 
 def block(rows: int, cols: int) -> Drawings:
     """One drawing full of tiles."""
     shape = Shape("0", ("#" * cols,) * rows, "0")
     return Drawings((shape,), (0,), ("0", "1", "2"), ({"file": "block.toml", "sha256": ""},))
-
-
-def simulator(
-    conditions: Conditions,
-    fault: Fault | None = None,
-    runs: int = 2,
-    drawings: Drawings = LETTERS,
-    engine: Any = FastEngine,
-    seed: int = 11,
-    threads: int | None = 1,
-) -> Simulator:
-    chosen = np.tile(np.arange(len(drawings)), runs)
-    random = np.random.default_rng(seed)
-    conditions = replace(conditions, fault=fault)
-    return Simulator(engine(MODEL), drawings, chosen, conditions, random, threads=threads)
 
 
 def check_against_the_slow_one(rollout: Simulator, steps: int) -> None:
@@ -98,34 +46,9 @@ def check_against_the_slow_one(rollout: Simulator, steps: int) -> None:
     assert np.array_equal(rollout.states, np.concatenate([run.states for run in slow]))
 
 
-CONDITIONS = [
-    Conditions("random"),
-    Conditions("random", loss=0.3, dead=0.1),
-    Conditions("random", loss=0.9),
-    Conditions("random", loss=0.2, lost="zero"),
-    Conditions("clock"),
-    Conditions("clock", loss=0.3, dead=0.1),
-    Conditions("clock", loss=0.9, boot=0.0),
-    Conditions("clock", loss=0.2, lost="zero", drift=0.08),
-    Conditions("clock", loss=1.0, latency=(0.05, 0.98), boot=3.7),
-]
-
-
 @pytest.mark.parametrize("conditions", CONDITIONS, ids=str)
 def test_every_state_and_display_is_that_of_the_slow_simulator(conditions: Conditions) -> None:
     check_against_the_slow_one(simulator(conditions), 30)
-
-
-TILES = np.array([3, 1, -1, 0, 2, 3])
-FAULTS = [
-    Fault("dead", TILES),
-    Fault("dead", TILES, begin=9),
-    Fault("stuck", TILES),
-    Fault("stuck", TILES, begin=9),
-    Fault("away", TILES, begin=5, end=7),
-    Fault("away", TILES, begin=5, end=14),
-    Fault("away", TILES, begin=0, end=6),
-]
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: f"{fault.kind}-{fault.begin}-{fault.end}")
@@ -150,17 +73,6 @@ def test_a_run_of_more_tiles_than_a_number_has_bits_is_the_slow_simulator_too(sc
     check_against_the_slow_one(simulator(Conditions(schedule, loss=0.1), runs=1, drawings=block(9, 15)), 4)
 
 
-def same(one: Simulator, other: Simulator, steps: int) -> bool:
-    """Whether two simulators have the same trajectories."""
-    trajectories = [rollout.run(steps, record=True) for rollout in (one, other)]
-    return (
-        np.array_equal(one.states, other.states)
-        and np.array_equal(trajectories[0].right, trajectories[1].right)
-        and np.array_equal(trajectories[0].shown, trajectories[1].shown)  # type: ignore[arg-type]
-        and one.updates == other.updates
-    )
-
-
 @pytest.mark.parametrize("schedule", ["random", "clock"])
 def test_the_result_does_not_depend_on_the_number_of_threads(schedule: Any) -> None:
     conditions = Conditions(schedule, loss=0.1)
@@ -169,16 +81,6 @@ def test_the_result_does_not_depend_on_the_number_of_threads(schedule: Any) -> N
     assert rollouts[0].cells > 8192, "several groups, or there is nothing to share"
     assert same(rollouts[0], rollouts[1], 12)
     assert np.array_equal(rollouts[2].run(12).right, simulator(conditions, fault, runs=700).run(12).right)
-
-
-def test_any_engine_follows_the_same_schedule_round_by_round() -> None:
-    for conditions in CONDITIONS:
-        for fault in (None, FAULTS[1], FAULTS[3], FAULTS[5]):
-            if conditions.dead == 0 or fault is None:
-                fast, plain = (
-                    simulator(conditions, fault, engine=engine) for engine in (FastEngine, PlainEngine)
-                )
-                assert same(fast, plain, 25), (conditions, fault)
 
 
 def test_the_same_seed_gives_the_same_life_and_another_one_another() -> None:
