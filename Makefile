@@ -40,11 +40,12 @@ demo: setup-demo ## build the firmware and let emulated tiles name the ten digit
 
 test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) export --check >&2
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest -n auto --dist worksteal
 
-check: static test ## what to run before every commit: format, lint, imports, types, budgets, tests
+check: static test ## what to run before every commit: format, lint, imports, types, budgets, documentation, tests
 
 static: format-check lint imports types budgets docs ## everything of `make check` but the tests
 

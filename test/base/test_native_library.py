@@ -136,9 +136,14 @@ def test_a_library_without_one_of_the_functions_is_stale(name: str, tmp_path: Pa
     assert re.search(rf"^{path}: not usable .*; remove it and run: make setup", refused(name, path))
 
 
-def test_a_missing_header_is_named(tmp_path: Path) -> None:
+@pytest.mark.parametrize("content", [None, b"\xff\xfe", b"int f(;", b"<<<<<<< ours\nint f(void);\n"])
+def test_a_missing_or_damaged_header_is_named_with_a_remedy(content: bytes | None, tmp_path: Path) -> None:
     header = tmp_path / "simulator.h"
-    assert refused("simulator", find("simulator").library, header).startswith(f"{header}: No such file")
+    if content is not None:
+        header.write_bytes(content)
+    message = refused("simulator", find("simulator").library, header)
+    assert message.startswith(f"{header}: not the header of this version")
+    assert message.endswith(f"run: git checkout -- {header}")
 
 
 def test_a_command_ends_in_one_line_and_status_4(tmp_path: Path) -> None:
@@ -153,7 +158,10 @@ def test_a_command_ends_in_one_line_and_status_4(tmp_path: Path) -> None:
     )
     assert (done.returncode, done.stdout) == (4, "")
     assert len(done.stderr.splitlines()) == 1
-    assert f"{tmp_path}/libtilenca_simulator.so: no library; remove it and run: make setup" in done.stderr
+    assert (
+        f"{tmp_path}/libtilenca_simulator.so: no library; remove it and unset TILENCA_LIBRARIES"
+        in done.stderr
+    )
 
 
 def test_what_is_for_the_preprocessor_is_left_out() -> None:
@@ -171,7 +179,7 @@ def test_an_installed_package_has_its_libraries_inside(
     monkeypatch.setattr(paths, "PACKAGE", tmp_path)
     library = tmp_path / "lib" / f"libtilenca_{name}.so"
     assert find(name) == Files(library, tmp_path / "lib" / "include" / "tilenca" / f"{name}.h")
-    assert refused(name, library) == f"{library}: missing; run: pip install --force-reinstall tilenca"
+    assert refused(name, library) == f"{library}: missing; run: pip install --force-reinstall tilenca-*.whl"
 
 
 def test_threads_that_load_at_the_same_time_get_the_same_library() -> None:

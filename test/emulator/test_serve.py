@@ -184,7 +184,7 @@ def test_tiles_that_fall_behind_real_time_say_how_far(avr: Compile, directory: P
         greeted(directory, "tile-02")
         assert server.stop() == 130
     assert server.process.stderr is not None
-    behind = re.search(r"the tiles are ([\d.]+) s behind real time: they lived", server.process.stderr.read())
+    behind = re.search(r"the tiles are ([\d.]+) s behind real time: they ran", server.process.stderr.read())
     assert behind is not None
     assert float(behind[1]) > 1.5
 

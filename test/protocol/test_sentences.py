@@ -125,7 +125,7 @@ def test_a_changed_character_is_noticed(sentence: Sentence, data: st.DataObject)
 
 @given(st.binary() | st.text())
 def test_parsing_anything_never_raises(line: bytes | str) -> None:
-    assert parse_sentence(line) is None or line
+    parse_sentence(line)
 
 
 @given(st.binary(max_size=120).map(lambda body: b"$%s*%02X" % (body, checksum(body))))

@@ -11,7 +11,7 @@
 
 namespace tilenca::c_api {
 
-// A caller asked for something that there is not. The message is for the user.
+// A caller asked for something that does not exist. The message is for the user.
 struct Refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

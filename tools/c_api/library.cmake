@@ -52,7 +52,7 @@ function(tilenca_library name)
     set(exports ${TILENCA_C_API_DIR}/exports.map)
     target_link_libraries(${name} PRIVATE tilenca_flags)
     target_link_options(${name} PRIVATE -Wl,-Bsymbolic "-Wl,--version-script=${exports}")
-    if(NOT TILENCA_SANITIZE) # whose functions come from a library that is loaded first
+    if(NOT TILENCA_SANITIZE) # the sanitizers' runtime is preloaded, so its symbols are undefined here
         target_link_options(${name} PRIVATE -Wl,--no-undefined)
     endif()
     set_target_properties(${name} PROPERTIES LINK_DEPENDS ${exports} LINKER_LANGUAGE CXX)

@@ -29,8 +29,8 @@ Clocks::Clocks(const tilenca_setup& setup, int first, int last)
 
 void Clocks::plan(Tick& tick) {
     int due = 0;
-    for (int cell = 0; cell < cells();
-         ++cell) { // without a branch, since this goes over all cells every tick
+    // Without a branch, since this goes over all cells every tick.
+    for (int cell = 0; cell < cells(); ++cell) {
         now_due_[due] = cell;
         due += due_[cell] == now_;
     }

@@ -76,7 +76,7 @@ void GridBatch::run(int steps, int threads, const Trajectory& trajectory) {
         while (others.size() + 1 < wanted) {
             others.emplace_back(work);
         }
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) { // std::system_error, or no memory
         // The machine gives no more threads: those that are there do the work of all.
     }
     work();

@@ -3,9 +3,9 @@
 //
 // `Eeprom` is any memory whose bytes are written slowly and one at a time. It has
 //
-//   bool busy()                                whether a byte is still being written, even since before a
-//   reset uint8_t read(uint8_t address)              only while not busy() void write(uint8_t address,
-//   uint8_t byte)  begins to write a byte; only while not busy()
+// - bool busy(): a byte is still being written, perhaps since before a reset
+// - uint8_t read(uint8_t address): only while not busy()
+// - void write(uint8_t address, uint8_t byte): begins to write a byte; only while not busy()
 #pragma once
 
 #include <stdint.h>

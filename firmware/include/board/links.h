@@ -12,8 +12,8 @@ namespace board {
 constexpr uint32_t kLinkBaud = 38400;
 constexpr uint32_t kRowBaud = 125000;
 
-// Take all bytes of every side at least this often, or some are lost. The main loop does so every two
-// milliseconds.
+// Take all bytes of every side at least this often, or some are lost. The longest turn of the main
+// loop is 3.3 ms (docs/BENCHMARKS.md).
 constexpr uint16_t kReadEveryUs = 5000;
 
 void links_begin();

@@ -13,9 +13,9 @@ import sys
 import threading
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from cffi import FFI
+from cffi import FFI, CDefError
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
@@ -115,15 +115,16 @@ def load(name: str) -> Library:
 def load_files(name: str, files: Files) -> Library:
     """Like `load`, from the files given."""
     path = files.library
-    remedy = REMEDIES[name] if paths.CHECKOUT else f"run: {install_remedy()}"
+    remedy = _remedy(name)
     if not path.is_file():
         raise BuildError(f"{path}: {'not built yet' if paths.CHECKOUT else 'missing'}; {remedy}")
     ffi = FFI()
     try:
         ffi.cdef(declarations(files.header.read_text(encoding="utf-8")))
-    except OSError as error:
+    except (OSError, UnicodeDecodeError, CDefError) as error:
+        restore = f"git checkout -- {files.header}" if paths.CHECKOUT else install_remedy()
         raise BuildError(
-            f"{files.header}: {error.strerror}; it belongs to this version; get it back"
+            f"{files.header}: not the header of this version ({type(error).__name__}); run: {restore}"
         ) from error
     if fault := elf_fault(path):
         raise BuildError(f"{path}: {fault}; remove it and {remedy}")
@@ -135,6 +136,15 @@ def load_files(name: str, files: Files) -> Library:
     if difference := _difference(library, version):
         raise BuildError(f"{path}: stale: {difference} than {files.header} says; {remedy}")
     return library
+
+
+def _remedy(name: str) -> str:
+    """What to do about a library that is missing or of no use."""
+    if paths.CHECKOUT is None:
+        return f"run: {install_remedy()}"
+    if os.environ.get(OTHER_FOLDER):
+        return f"unset {OTHER_FOLDER}, or build there: cmake --build --preset NAME"
+    return REMEDIES[name]
 
 
 def declarations(header: str) -> str:
@@ -183,11 +193,11 @@ def elf_fault(path: Path) -> str:
     if head[4:6] != own[4:6] or head[18:20] != own[18:20]:
         return "for another kind of processor"
     # The table of sections comes last in the file.
-    order = "little" if head[5] == 1 else "big"
+    order: Literal["little", "big"] = "little" if head[5] == 1 else "big"
     table, entry, count = ((40, 8), (58, 2), (60, 2)) if head[4] == 2 else ((32, 4), (46, 2), (48, 2))
 
     def number(place: tuple[int, int]) -> int:
-        return int.from_bytes(head[place[0] : place[0] + place[1]], "little" if order == "little" else "big")
+        return int.from_bytes(head[place[0] : place[0] + place[1]], order)
 
     if number(table) + number(entry) * number(count) > size:
         return "cut short"

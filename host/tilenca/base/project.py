@@ -1,4 +1,4 @@
-"""What a command says where it needs a project, a build or an extra that is not there."""
+"""Messages for a missing project, build or extra."""
 
 from pathlib import Path
 
@@ -40,6 +40,6 @@ def install_remedy(extra: str = "") -> str:
         extra: of pyproject.toml.
     """
     if paths.CHECKOUT is None:
-        return f"pip install 'tilenca[{extra}]'" if extra else "pip install --force-reinstall tilenca"
+        return f"pip install 'tilenca[{extra}]'" if extra else "pip install --force-reinstall tilenca-*.whl"
     level = "setup-train" if extra in ("train", "plot") else "setup"
     return f"make {level}"

@@ -13,12 +13,15 @@ from tilenca.base.stdio import warn
 from tilenca.commands.arguments import count, number, seed, size, whole
 from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.faults import KINDS
 from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.fleet.recording import Recorder
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.shapes.file import Shape, Task, load_task
 from tilenca.shapes.sizes import Size, size_name
+from tilenca.views.lag import show_lag
 
 ALL = "all"
 MAX_TILES = 255  # a tile's number is one byte
@@ -83,8 +86,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=parse_fault,
         default=[],
         metavar="SPEC",
-        help="a fault with its place and time, such as loss=0.1 or cut@3-4:2-5; again for more (see "
-        "docs/EMULATOR.md)",
+        help="a fault with its place and time, such as loss=0.1 or cut@3-4:2-5; again for more. Kinds: "
+        f"{', '.join(KINDS)}",
     )
     add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")
     add(
@@ -153,9 +156,7 @@ def run(args: argparse.Namespace) -> int:
         return Emulation(shape, task.labels, image, settings, defaults)
 
     if args.serve is not None:
-        emulation = lay_out(shapes[0])
-        with emulation.array, observe(emulation, args) as on_slice:
-            serve(emulation, args.serve, args.seconds, not args.keep_running, on_slice)
+        _serve(args, lay_out(shapes[0]))
         return 0
     with ExitStack() as stack:
         record = stack.enter_context(Recorder(args.record, "w")) if args.record else None
@@ -167,6 +168,18 @@ def run(args: argparse.Namespace) -> int:
     for note in sorted({note for result in results for note in result.notes}):
         warn(f"tilenca: {note}")
     return 0 if all(result.report["all_right"] for result in results) else 1
+
+
+def _serve(args: argparse.Namespace, emulation: Emulation) -> None:
+    """Gives the tiles' serial ports to other programs, and tells how far they fall behind."""
+    lag = Lag()
+    with emulation.array, observe(emulation, args) as look, show_lag(lag) as tell:
+
+        def on_slice() -> None:
+            look()
+            tell()
+
+        serve(emulation, args.serve, args.seconds, not args.keep_running, on_slice, lag)
 
 
 def _check_combinations(args: argparse.Namespace) -> None:

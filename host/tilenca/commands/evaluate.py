@@ -165,7 +165,7 @@ def _aims(model: Model) -> Aims:
         recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0))
     )
     if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown)):
-        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; check out again")
+        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
     return Aims(float(stretch), damaged > 0, unknown > 0)
 
 
@@ -271,12 +271,12 @@ def _report(
 
 
 def _print(report: dict[str, Any]) -> None:
-    def times(settle: dict[str, float | None]) -> list[str]:
-        return ["never" if value is None else f"{value:.0f}" for value in settle.values()]
+    def texts(times: dict[str, float | None]) -> list[str]:
+        return ["never" if value is None else f"{value:.0f}" for value in times.values()]
 
     def cells(name: str, file: str, row: dict[str, Any]) -> list[str]:
         shares = f"{row['cells_right']:.4f}", f"{row['total_agreement']:.4f}"
-        return [name, file, *shares, *times(row["steps_to_agreement"])]
+        return [name, file, *shares, *texts(row["steps_to_agreement"])]
 
     rows = [cells(row["name"], row["file"], row) for row in report["per_shape"]]
     rows.append(cells("all", "", report))

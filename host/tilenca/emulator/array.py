@@ -1,4 +1,4 @@
-"""Many emulated tiles on one clock: the Python face of the C++ array."""
+"""Many emulated tiles on one clock: the Python interface of the C++ array."""
 
 import os
 from collections.abc import Iterator, Sequence

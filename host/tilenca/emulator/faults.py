@@ -29,6 +29,7 @@ EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2"
 LINK_KINDS = {"loss": 1.0, "flip": 1.0, "delay": 1000.0}  # with the most each can be
 TILE_KINDS = {"drift": 10_000.0, "adc": 100.0}
 MOMENT_KINDS = ("cut", "off", "remove", "reset")
+KINDS = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
 SHAPE = re.compile(r"([a-z]+)(?:=([^@:]+))?(?:@([^:]+))?(?::([^-]+)(?:-(.+))?)?")
 # One direction: the tile, counted from 0, and the side that it leaves.
 End = tuple[int, int]

@@ -16,7 +16,7 @@ from pathlib import Path
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
 from tilenca.emulator.experiment import Emulation
-from tilenca.emulator.lag import Lag, told
+from tilenca.emulator.lag import Lag
 from tilenca.emulator.tile import EmulatedTile
 from tilenca.emulator.types import port_name
 
@@ -102,7 +102,8 @@ def serve(
     directory: Path,
     seconds: float | None,
     reset_on_open: bool,
-    on_slice: Callable[[], None] = lambda: None,
+    on_slice: Callable[[], None],
+    lag: Lag,
 ) -> None:
     """Serves all tiles until `seconds` have passed on the wall clock, or for ever.
 
@@ -112,6 +113,7 @@ def serve(
         seconds: for how long; None: until it is interrupted.
         reset_on_open: whether opening a port resets its tile, as DTR does on a Mega.
         on_slice: called after every few milliseconds.
+        lag: adds up the time by which the tiles fall behind.
 
     Raises:
         UsageError: the directory cannot be used, or another run serves tiles there.
@@ -134,7 +136,7 @@ def serve(
             served.append(ServedTile(tile, directory / port_name(tile.index), reset_on_open))
             stack.callback(served[-1].close)
         warn(f"serving {len(served)} tiles as {directory}/tile-*; Ctrl-C ends it")
-        _keep_step(emulation, served, seconds, on_slice)
+        _keep_step(emulation, served, seconds, on_slice, lag)
 
 
 def _lock(directory: Path) -> int:
@@ -162,20 +164,21 @@ def _sweep(directory: Path) -> None:
 
 
 def _keep_step(
-    emulation: Emulation, served: list[ServedTile], seconds: float | None, on_slice: Callable[[], None]
+    emulation: Emulation,
+    served: list[ServedTile],
+    seconds: float | None,
+    on_slice: Callable[[], None],
+    lag: Lag,
 ) -> None:
     started = last = time.monotonic()
-    lag = Lag()
-    with told(lag) as tell:
-        while seconds is None or last - started < seconds:
-            time.sleep(max(0.0, last + STEP_S - time.monotonic()))
-            now = time.monotonic()
-            emulation.pass_time(lag.take(now - last))
-            on_slice()
-            last = now
-            for port in served:
-                port.exchange()
-            tell()
+    while seconds is None or last - started < seconds:
+        time.sleep(max(0.0, last + STEP_S - time.monotonic()))
+        now = time.monotonic()
+        emulation.pass_time(lag.take(now - last))
+        last = now
+        for port in served:
+            port.exchange()
+        on_slice()
 
 
 def _remove(directory: Path) -> None:

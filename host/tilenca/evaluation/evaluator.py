@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tilenca.evaluation.metrics import Measurement, Runs, Target, measure, target_of
 from tilenca.evaluation.suites import Case, Suite
 from tilenca.simulator.engine import Engine
-from tilenca.simulator.simulator import Conditions, Fault, ScheduleKind, Simulator, Trajectory
+from tilenca.simulator.simulator import Conditions, Fault, FaultKind, ScheduleKind, Simulator, Trajectory
 from tilenca.simulator.transitions import rebuild, rebuild_tile_by_tile
 
 MARKS = (10, 30, 60)  # steps after which agreement is reported
@@ -20,7 +20,6 @@ LONG = 1000
 LEAST_LASTING = 3000  # steps without a regression, in short measurements; slow drifts show after two thousand
 SCHEDULES: dict[ScheduleKind, str] = {"random": "the paper's sampler", "clock": "the tiles' own clocks"}
 CLOCK = Conditions("clock")
-FaultKind = Literal["dead", "stuck", "away"]
 Say = Callable[[str], None]
 # The faults to measure: name, kind, first step, step of its end, and the kind of the target.
 FAULTS: tuple[tuple[str, FaultKind, int, int | None, str | None], ...] = (

@@ -1,4 +1,4 @@
-"""Who lies where on the monitor's screen: tiles as cells of a grid. Pure: the fleet in, cells out."""
+"""The tiles' places on the monitor's screen: tiles as cells of a grid. Pure: the fleet in, cells out."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -143,7 +143,7 @@ def load_model(directory: Path) -> Model:
     if about.get("model_id") != f"{model.model_id:04X}":
         raise UsageError(
             f"{weights_path}: the weights have id {model.model_id:04X}, {about_path.name} says "
-            f"{about.get('model_id')!r}; the two files do not belong together, train or check out again"
+            f"{about.get('model_id')!r}; the two files do not belong together, train or get it again"
         )
     return model
 
@@ -173,7 +173,7 @@ def _metadata(path: Path, about: dict[str, Any]) -> dict[str, Any]:
     """How the model was made: free form, but for the recipe, whose settings decide how it is simulated."""
     metadata = format_1.metadata_of(about) if about["format"] == 1 else about.get("metadata", {})
     if not isinstance(metadata, dict) or not isinstance(metadata.get("recipe", {}), dict):
-        raise UsageError(f"{path}: metadata, and metadata.recipe, must be objects; train or check out again")
+        raise UsageError(f"{path}: metadata, and metadata.recipe, must be objects; train or get it again")
     return metadata
 
 
@@ -187,9 +187,9 @@ def _weights(
         with archive:
             arrays = {name: archive[name] for name in archive.files}
     except OSError as error:
-        raise UsageError(f"{path}: {error.strerror or error}; train or check out again") from error
+        raise UsageError(f"{path}: {error.strerror or error}; train or get it again") from error
     except DAMAGED as error:
-        raise UsageError(f"{path}: damaged ({error}); train or check out again") from error
+        raise UsageError(f"{path}: damaged ({error}); train or get it again") from error
     integer: dict[str, NDArray[Any]] = {}
     floats: dict[str, NDArray[np.float32]] = {}
     for name, shape in dimensions.shapes().items():

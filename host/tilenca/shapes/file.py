@@ -71,10 +71,6 @@ class Task:
     labels: tuple[str, ...]
     sizes: Sizes = field(default_factory=Sizes)
 
-    def class_of(self, shape: Shape) -> int:
-        """Index of the shape's label among the task's classes."""
-        return self.labels.index(shape.label)
-
     def find(self, name: str) -> Shape:
         """The shape called `name` (`4`, or `4@2` for the second drawing of "4").
 

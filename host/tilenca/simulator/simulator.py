@@ -9,7 +9,7 @@ engine, such as tensors (`tilenca.training.float_engine`), follows the same sche
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from tilenca.simulator.numpy_rollout import NumpyRollout
 from tilenca.simulator.rollout_library import DARK, NOBODY, CompiledRollout, Setup
 
 ScheduleKind = Literal["random", "clock"]
+FaultKind = Literal["dead", "stuck", "away"]
 
 # Cell updates between two checks for Ctrl-C: some tenths of a second.
 ATTENTION = 500_000
@@ -41,13 +42,13 @@ class Fault:
         ValueError: the steps do not fit the kind.
     """
 
-    kind: Literal["dead", "stuck", "away"]
+    kind: FaultKind
     tiles: NDArray[np.int64]
     begin: int = 0
     end: int | None = None
 
     def __post_init__(self) -> None:
-        if self.kind not in ("dead", "stuck", "away"):
+        if self.kind not in get_args(FaultKind):
             raise ValueError(f"no such fault: {self.kind!r}")
         if self.begin < 0 or (self.end is not None) != (self.kind == "away"):
             raise ValueError(

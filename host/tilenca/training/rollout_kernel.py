@@ -1,6 +1,6 @@
 """Training's inner loop, compiled for this machine: tools/rollout_kernel behind torch tensors.
 
-`make setup` builds the library. `rollout.rollout_by_autograd` computes the same in plain PyTorch.
+`make setup-train` builds the library. `rollout.rollout_by_autograd` computes the same in plain PyTorch.
 """
 
 from typing import Any, NamedTuple

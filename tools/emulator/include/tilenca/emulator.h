@@ -2,9 +2,9 @@
 // cycle. Plain C99, for any language.
 //
 // Conventions. Times are in seconds since the array began. Tiles count from 0; a side is one of N E S W, 0 to
-// 3; a pin is a port letter, A to L without I, and a bit, 0 to 7. A function that returns `int` and nothing
-// else to tell returns 0. A function that fails returns null or a negative number, changes nothing unless it
-// says so, and tilenca_emulator_last_error says why in one line. Every index and range is checked; a null
+// 3; a pin is a port letter, A to L without I, and a bit, 0 to 7. A function without another result returns 0.
+// A function that fails returns null or a negative number, changes nothing unless its comment says so, and
+// tilenca_emulator_last_error says why in one line. Every index and range is checked; a null
 // array fails, too. An array belongs to one thread at a time; different arrays know nothing of each other.
 #ifndef TILENCA_EMULATOR_H
 #define TILENCA_EMULATOR_H
@@ -61,7 +61,7 @@ enum { TILENCA_RESET_EXTERNAL = 2, TILENCA_RESET_BROWN_OUT = 4 };
 TILENCA_API int tilenca_emulator_abi_version(void);
 // The bytes of a structure above, by its name ("tilenca_cycles"); 0: there is none of that name.
 TILENCA_API size_t tilenca_emulator_size_of(const char* structure);
-// Why the last function failed that failed in this thread; valid until the next one fails.
+// The message of this thread's last failure; valid until the next one fails.
 TILENCA_API const char* tilenca_emulator_last_error(void);
 
 // --- arrays ---
@@ -122,8 +122,8 @@ TILENCA_API int tilenca_tile_warnings(tilenca_array* array, unsigned tile);
 TILENCA_API const char* tilenca_tile_warning(tilenca_array* array, unsigned tile, unsigned index);
 // Lit segments: bit 0 = a ... bit 6 = g, bit 7 = dp.
 TILENCA_API int tilenca_tile_segments(tilenca_array* array, unsigned tile);
-// From the change number `first` on, at most `room` of all that the display has shown; returns how many
-// changes there are in all. With a `room` of 0 both arrays may be null.
+// Copies at most `room` changes of the display, beginning with number `first`; returns how many there are in
+// all. With a `room` of 0 both arrays may be null.
 TILENCA_API ptrdiff_t tilenca_tile_display_changes(tilenca_array* array, unsigned tile, size_t first,
                                                    double* times, uint8_t* segments, size_t room);
 // The debug LEDs: bit 0..3 = N E S W.
@@ -217,7 +217,7 @@ TILENCA_API ptrdiff_t tilenca_tile_marks(tilenca_array* array, unsigned tile, ui
 // `baud` below 0: keeps edges; 0: reads bytes at the rate of the pin's USART; above: reads bytes at that
 // rate. Returns its number.
 TILENCA_API int tilenca_probe_new(tilenca_array* array, unsigned tile, char port, unsigned bit, double baud);
-// It keeps its number; a probe that was freed has nothing more to tell, and freeing it again does nothing.
+// It keeps its number; a freed probe returns nothing, and freeing it again does nothing.
 TILENCA_API int tilenca_probe_free(tilenca_array* array, unsigned probe);
 // The level before the first edge that was not taken yet: 0 or 1; 0 where it was freed.
 TILENCA_API int tilenca_probe_level(tilenca_array* array, unsigned probe);

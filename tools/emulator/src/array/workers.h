@@ -2,7 +2,7 @@
 //
 // A quantum takes microseconds, so they look out for work all the time, and a message from one to the other
 // is one cache line written by one and read by the other. Each thread has its own part, whose tiles stay in
-// its caches; what a thread leaves undone because other programs have its processor, the others do.
+// its caches. The other threads finish the work of one that lost its processor to another program.
 #pragma once
 
 #include <atomic>

@@ -79,10 +79,10 @@ struct Cpu {
     bool deeply = false; // asleep, and the clock of the peripherals stands
     bool sleep_enabled = false;
     bool trap_hit = false;        // the instruction at hand is a trap that has not been looked at yet
-    bool yields = false;          // hands control back to whoever runs it, who clears this
+    bool yields = false;          // returns control to the caller, which clears this
     uint32_t clock_divisor = 1;   // of the system clock prescaler
     bool halts_after_one = false; // instruction, or interrupt taken
-    bool halted = false;          // before a breakpoint; whoever debugs says when to go on
+    bool halted = false;          // before a breakpoint, until the debugger goes on
     uint64_t instructions = 0;    // counted by single steps only
     std::string fault;            // what stopped the core; empty: nothing
 

@@ -34,7 +34,7 @@ struct EdgeListener {
     virtual void edge(PinId pin, uint64_t cycle, bool level) = 0;
 };
 
-// Whoever takes a pin from its port: a timer's compare output.
+// A part that overrides a port's pin: a timer's compare output.
 struct PinSource {
     virtual ~PinSource() = default;
     virtual bool pin_level(PinId pin, uint64_t cycle) = 0;

@@ -1,4 +1,4 @@
-// The two-wire interface (I2C) as master on a bus with nobody else: every address is answered by no one.
+// The two-wire interface (I2C) as master of an empty bus: no address is acknowledged.
 #pragma once
 
 #include "avr/peripheral.h"

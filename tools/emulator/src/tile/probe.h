@@ -1,4 +1,4 @@
-// What eyes can be laid on a pin: its edges with their times, and the bytes that they spell.
+// Observers of one pin: its edges with their times, and the bytes that the edges make.
 #pragma once
 
 #include "avr/gpio.h"

@@ -1,4 +1,4 @@
-// Somebody who listens to a serial line at an exact baud rate: 8N1, in ticks, whatever the sender's clock.
+// A receiver of a serial line at an exact baud rate: 8N1, in ticks, whatever the sender's clock.
 #pragma once
 
 #include "avr/frame_reader.h"
@@ -18,7 +18,7 @@ class SerialReceiver {
     };
 
     void set_baud(double baud) { baud_ = baud; }
-    // From now on at the rate somebody means whose bits take that long; 0: nothing is known of it.
+    // Sets the rate from the length of a bit; 0: the rate is not known.
     void follow(double bit_ticks);
     double bit_ticks() const { return kTicksPerSecond / baud_; }
     // A later call with an earlier time takes back what was said after it.
