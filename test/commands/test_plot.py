@@ -175,3 +175,9 @@ def test_without_matplotlib_the_remedy_is_named(tmp_path: Path) -> None:
         assert (
             done.stderr == "tilenca: plots need matplotlib, which is not installed; run: make setup-train\n"
         )
+
+
+def test_a_folder_is_not_called_like_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", "--out", str(tmp_path / "history.png")]) == 2
+    assert "give a folder" in capsys.readouterr().err
+    assert not (tmp_path / "history.png").exists()

@@ -186,6 +186,14 @@ def test_the_built_in_image_is_flashed_without_a_project(plain: EmptyEnvironment
         serving.communicate(timeout=60)
 
 
+def test_a_picture_of_a_built_in_model_goes_into_this_folder(
+    training: EmptyEnvironment, tmp_path: Path
+) -> None:
+    done = training.run(tmp_path, "tilenca", "plot", "--json")
+    assert json.loads(done.stdout)["file"] == "history.png"
+    assert (tmp_path / "history.png").exists()
+
+
 def test_with_its_extra_it_plots(training: EmptyEnvironment, tmp_path: Path) -> None:
     done = training.run(tmp_path, "tilenca", "plot", "--film", "four.png", "--shape", "4")
     assert done.returncode == 0, done.stderr

@@ -27,7 +27,7 @@ def test_the_table_has_a_line_for_each(capsys: pytest.CaptureFixture[str]) -> No
     assert [line.split() for line in said.out.splitlines()] == [
         ["PORT", "TILE", "RESULT", "SECONDS", "FIRMWARE", "WHY"],
         ["/dev/ttyACM0", "3", "flashed", "4.2", "-"],
-        ["/dev/ttyACM1", "7", "skipped", "-", "ABCDEF01"],
+        ["/dev/ttyACM1", "7", "skipped", "-", "ABCDEF01", "runs", "this", "image", "already"],
         ["/dev/ttyACM2", "-", "failed", "11.0", "-", "no", "reply;", "is", "it", "a", "tile?"],
     ]
     assert said.err == "1 of 3 flashed, 1 ran it already\n"

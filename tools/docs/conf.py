@@ -4,6 +4,7 @@ The source folder is the root of the project, so that a link between documents w
 and on the site alike, also where it leads out of docs/.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -26,7 +27,17 @@ extensions = [
     "docs.module_pages",
 ]
 root_doc = "docs/index"
-include_patterns = ["docs/**", "models/*/README.md", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+# The cards that the reference lists: a model that a user trains beside them has no page.
+cards = re.findall(
+    r"models/[^/]+/README", (ROOT / "docs" / "reference" / "models.md").read_text(encoding="utf-8")
+)
+include_patterns = [
+    "docs/**",
+    *(f"{card}.md" for card in cards),
+    "README.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+]
 exclude_patterns = [".*", "build", "firmware", "host", "test", "tools", "tiles"]
 
 myst_heading_anchors = 4

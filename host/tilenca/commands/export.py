@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tilenca.base.errors import TilencaError
 from tilenca.base.project import project
+from tilenca.base.stdio import warn
 from tilenca.commands import export_plan
 from tilenca.commands.arguments import add_model_argument
 from tilenca.model import cost, packing
@@ -72,4 +73,6 @@ def run(args: argparse.Namespace) -> int:
             print(f"{out / path}: {state}")
         print(f"model {report['model_id']}, {report['flash_bytes']} bytes of flash")
         print(_sums(model))
+        if not args.check:
+            warn("next: pio run")
     return 0

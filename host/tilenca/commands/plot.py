@@ -27,7 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="DIR",
-        help="where the picture of the training goes (the model's directory)",
+        help="where the picture of the training goes (the model's directory; for a model that comes with an "
+        "installed tilenca, this folder)",
     )
     parser.add_argument(
         "--format", choices=("png", "svg"), default="png", help="of the picture of the training (png)"
@@ -68,7 +69,11 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
 
     model = load_model(args.model)
     columns, rows = read_history(args.model / HISTORY_FILE)
-    out = args.model if args.out is None else args.out
+    out = args.out or _home(args.model)
+    if out.suffix in FILM_SUFFIXES:
+        raise UsageError(
+            f"--out {out}: give a folder; --format names the kind of picture, --film FILE draws a film"
+        )
     path = out / f"history.{args.format}"
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -76,6 +81,12 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
         raise plots.unwritable(out, error) from error
     plots.plot_history(rows, path, columns, f"Training of model {model.model_id:04X}")
     return {"file": str(path), "model": f"{model.model_id:04X}", "rows": len(rows)}
+
+
+def _home(model: Path) -> Path:
+    """Where the picture goes by default: beside the model, but not into an installed package."""
+    is_installed = paths.CHECKOUT is None and model.resolve().is_relative_to(paths.MODELS.resolve())
+    return Path() if is_installed else model
 
 
 def read_history(path: Path) -> tuple[list[str], list[list[float | None]]]:

@@ -266,3 +266,6 @@ def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seco
             f"  missed: {row['name']}, after {row['steps']} steps: {row['share']:.1%} of the runs, "
             f"wanted {row['target']:.1%}; the worst drawing, {worst['shape']}: {worst['share']:.1%}{least}"
         )
+    if missed and args.recipe == "smoke":
+        warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
+    warn(f"next: tilenca evaluate --model {where}, or tilenca export --model {where} and pio run")

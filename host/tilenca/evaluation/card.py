@@ -31,7 +31,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "`model.json` describes it, `weights.npz` holds real and integer weights, `metrics.json` every "
         "number below, `history.csv` the history of training (`tilenca plot` draws it).",
         "",
-        f"On a tile: {cost.check(size, len(model.labels))}",
+        f"It {cost.check(size, len(model.labels))}",
         "",
         "## How it was made",
         "",

@@ -5,7 +5,7 @@ Both schedules become the same list of updates, so that one loop trains on a mix
 - the paper's sampler: in every tick each tile updates with the sample's fire rate, and its neighbours receive
   the message at once;
 - the tiles' own clocks: each tile updates once per period, with a phase and a slightly different period of
-its own, and its neighbours read its last message a little after it was sent.
+  its own, and its neighbours read its last message a little after it was sent.
 """
 
 from collections.abc import Iterator

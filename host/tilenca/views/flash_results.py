@@ -40,7 +40,8 @@ class FlashRow:
         """Its row under HEADER; without seconds if avrdude was never started."""
         seconds = f"{self.seconds:.1f}" if self.attempts else "-"
         tile = str(self.tile or "-")
-        return [self.port or "-", tile, self.result, seconds, self.firmware_id or "-", self.error or ""]
+        why = "runs this image already" if self.result == "skipped" else self.error or ""
+        return [self.port or "-", tile, self.result, seconds, self.firmware_id or "-", why]
 
 
 def tell(rows: Sequence[FlashRow], as_json: bool) -> None:
