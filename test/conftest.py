@@ -39,7 +39,7 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Puts the longest tests first: one at the end would keep one processor busy and leave the others idle."""
+    """Puts the longest tests first: at the end, one would keep one processor busy and the others idle."""
     items.sort(key=lambda item: item.get_closest_marker("soak") is None)
 
 
