@@ -38,6 +38,11 @@ def pytest_configure() -> None:
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Puts the longest tests first: at the end, one would keep one processor busy and the others idle."""
+    items.sort(key=lambda item: item.get_closest_marker("soak") is None)
+
+
 @pytest.fixture(scope="session")
 def two_shapes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A shape file that is trained in seconds."""
