@@ -2,8 +2,8 @@
 // cycle. Plain C99, for any language.
 //
 // Conventions. Times are in seconds since the array began. Tiles count from 0; a side is one of N E S W, 0 to
-// 3; a pin is a port letter, A to L without I, and a bit, 0 to 7. A function without another result returns 0.
-// A function that fails returns null or a negative number, changes nothing unless its comment says so, and
+// 3; a pin is a port letter, A to L without I, and a bit, 0 to 7. A function without another result returns
+// 0. A function that fails returns null or a negative number, changes nothing unless its comment says so, and
 // tilenca_emulator_last_error says why in one line. Every index and range is checked; a null
 // array fails, too. An array belongs to one thread at a time; different arrays know nothing of each other.
 #ifndef TILENCA_EMULATOR_H
