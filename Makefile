@@ -40,7 +40,6 @@ demo: setup-demo ## build the firmware and let emulated tiles name the ten digit
 
 test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
-	@$(TILENCA) export --check >&2
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest -n auto --dist worksteal
@@ -97,7 +96,6 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)
-	@$(TILENCA) export --check >&2
 	@$(TOOL) release.wheel
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay

@@ -16,7 +16,7 @@ from tilenca import cli
 from tilenca.base import paths
 from tilenca.commands.simulate import picture_of
 from tilenca.shapes.file import Shape, load_task
-from tilenca.shapes.glyphs import glyph, look_of
+from tilenca.shapes.glyphs import GLYPHS, look_of
 
 WALL = ("seconds", "updates_per_second")
 
@@ -141,7 +141,7 @@ def test_without_a_terminal_watching_tells_every_change(capsys: pytest.CaptureFi
 def test_a_picture_has_the_glyph_and_colour_of_each_class_and_dark_tiles() -> None:
     task = load_task(paths.DEFAULT_SHAPES)
     picture = picture_of(task.find("1"), task.labels, np.array([1, 1, -1, 7, 0], np.int8))
-    assert picture.segments == (glyph("1"), glyph("1"), 0, glyph("7"), glyph("0"))
+    assert picture.segments == (GLYPHS["1"], GLYPHS["1"], 0, GLYPHS["7"], GLYPHS["0"])
     assert picture.colours[2] == (0, 0, 0)
     assert picture.colours[3] == look_of("7", 7).colour
 
@@ -149,7 +149,7 @@ def test_a_picture_has_the_glyph_and_colour_of_each_class_and_dark_tiles() -> No
 def test_a_picture_has_the_colours_of_the_tiles_whatever_the_order_of_the_classes() -> None:
     shape = Shape("7", ("##",), "7")
     picture = picture_of(shape, ("7", "1"), np.array([0, 1], np.int8))
-    assert picture.segments == (glyph("7"), glyph("1"))
+    assert picture.segments == (GLYPHS["7"], GLYPHS["1"])
     assert picture.colours == ((55, 0, 0), (0, 20, 0)), "red and green, as the tiles show these digits"
 
 

@@ -2,7 +2,6 @@
 
 import io
 import json
-import shutil
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -11,24 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from support.refusal import refusal
 from tilenca.base import paths
-from tilenca.base.errors import UsageError
 from tilenca.model.file import Dimensions, load_model
 from tilenca.training.recipes import RECIPES
-
-
-@pytest.fixture
-def model(tmp_path: Path) -> Path:
-    """A copy of the shipped model."""
-    return Path(shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model"))
-
-
-def refusal(model: Path) -> str:
-    with pytest.raises(UsageError) as caught:
-        load_model(model)
-    message = str(caught.value)
-    assert "\n" not in message
-    return message
 
 
 def npy(array: Any) -> bytes:

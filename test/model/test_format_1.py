@@ -1,32 +1,16 @@
 """Descriptions that tilenca 0.1 wrote."""
 
 import json
-import shutil
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tilenca.base import paths
-from tilenca.base.errors import UsageError
+from support.refusal import refusal
 from tilenca.model import format_1
 from tilenca.model.file import load_model
 from tilenca.training.recipes import Recipe
-
-
-@pytest.fixture
-def model(tmp_path: Path) -> Path:
-    """A copy of the shipped model."""
-    return Path(shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model"))
-
-
-def refusal(model: Path) -> str:
-    with pytest.raises(UsageError) as caught:
-        load_model(model)
-    message = str(caught.value)
-    assert "\n" not in message
-    return message
 
 
 def test_a_model_of_format_1_is_read_and_saved_as_format_2(model: Path, tmp_path: Path) -> None:

@@ -8,7 +8,6 @@ from tilenca.shapes.glyphs import (
     GLYPHS,
     Look,
     draw,
-    glyph,
     label_of_glyph,
     look_of,
     look_of_class,
@@ -18,13 +17,13 @@ from tilenca.shapes.glyphs import (
 
 
 def test_the_ten_digits_differ() -> None:
-    assert len({glyph(digit) for digit in "0123456789"}) == 10
+    assert len({GLYPHS[digit] for digit in "0123456789"}) == 10
 
 
 def test_a_shown_label_reads_back() -> None:
     for label in GLYPHS:
-        assert label_of_glyph(glyph(label), known=(label,)) == label
-        assert label_of_glyph(glyph(label) | DECIMAL_POINT, known=(label,)) == label
+        assert label_of_glyph(GLYPHS[label], known=(label,)) == label
+        assert label_of_glyph(GLYPHS[label] | DECIMAL_POINT, known=(label,)) == label
 
 
 def test_dark_and_nonsense_displays() -> None:
@@ -34,8 +33,8 @@ def test_dark_and_nonsense_displays() -> None:
 
 
 def test_a_drawn_digit_looks_like_itself() -> None:
-    assert draw(glyph("4")) == ("   ", "|_|", "  |")
-    assert draw(glyph("8")) == (" _ ", "|_|", "|_|")
+    assert draw(GLYPHS["4"]) == ("   ", "|_|", "  |")
+    assert draw(GLYPHS["8"]) == (" _ ", "|_|", "|_|")
 
 
 def test_the_papers_colours_and_dimmer_ones_for_more_classes() -> None:
@@ -47,7 +46,7 @@ def test_the_papers_colours_and_dimmer_ones_for_more_classes() -> None:
 def test_a_digit_has_its_own_colour_wherever_it_stands_and_a_letter_that_of_its_class() -> None:
     assert look_of_class(("7", "0"), 0) == look_of_class(tuple("0123456789"), 7)
     assert look_of_class(("b", "7"), 0).colour == look_of_class(("A", "b"), 0).colour
-    assert looks_of(("7", "b")) == [Look("7", glyph("7"), (55, 0, 0)), Look("b", glyph("b"), (0, 20, 0))]
+    assert looks_of(("7", "b")) == [Look("7", GLYPHS["7"], (55, 0, 0)), Look("b", GLYPHS["b"], (0, 20, 0))]
 
 
 def test_a_label_of_a_foreign_tile_lights_nothing_and_harms_nobody() -> None:

@@ -8,11 +8,11 @@ from rich.console import Console
 
 from tilenca.base import paths
 from tilenca.shapes.file import Shape, load_task
-from tilenca.shapes.glyphs import GLYPHS, glyph
+from tilenca.shapes.glyphs import GLYPHS
 from tilenca.views.tiles import Picture, beside, digit
 
 SHAPE = Shape("L", ("#.", "##"), "L")
-LIT = Picture(SHAPE, (glyph("L"), glyph("8"), 0), ((0, 0, 30), (20, 20, 20), (0, 0, 0)))
+LIT = Picture(SHAPE, (GLYPHS["L"], GLYPHS["8"], 0), ((0, 0, 30), (20, 20, 20), (0, 0, 0)))
 
 
 def shown(
@@ -33,9 +33,9 @@ def shown(
 
 
 def test_digits_are_drawn_in_lines_that_meet() -> None:
-    assert digit(glyph("8")) == ("┏━┓", "┣━┫", "┗━┛")
-    assert digit(glyph("4")) == ("╻ ╻", "┗━┫", "  ╹")
-    assert digit(glyph("-")) == ("   ", "╺━╸", "   ")
+    assert digit(GLYPHS["8"]) == ("┏━┓", "┣━┫", "┗━┛")
+    assert digit(GLYPHS["4"]) == ("╻ ╻", "┗━┫", "  ╹")
+    assert digit(GLYPHS["-"]) == ("   ", "╺━╸", "   ")
     assert digit(0) == ("   ", "   ", "   ")
 
 
@@ -80,7 +80,7 @@ def test_every_shipped_shape_has_as_many_frames_as_tiles() -> None:
     for path in Path(paths.SHAPES).glob("*.toml"):
         for shape in load_task(path).shapes:
             count = len(shape.cells)
-            text = shown(Picture(shape, (glyph("-"),) * count, ((0, 20, 0),) * count), width=200)
+            text = shown(Picture(shape, (GLYPHS["-"],) * count, ((0, 20, 0),) * count), width=200)
             assert text.count("│ ╺━╸ ") == count
 
 

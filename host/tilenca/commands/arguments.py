@@ -95,6 +95,25 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
+    """`--schedule`, `--loss`, `--lost` and `--dead`: the conditions of simulated runs."""
+    add = parser.add_argument
+    add(
+        "--schedule",
+        choices=("random", "clock"),
+        default="clock",
+        help="the paper's, or the tiles' clocks (clock)",
+    )
+    add("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1 (0)")
+    add(
+        "--lost",
+        choices=("held", "zero"),
+        default="held",
+        help="a lost message reads as the last one, or as zero (held)",
+    )
+    add("--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1 (0)")
+
+
 def add_port_argument(parser: argparse.ArgumentParser) -> None:
     """The `--port` option that all fleet commands share."""
     parser.add_argument(

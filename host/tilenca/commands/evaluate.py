@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.base.project import build_remedy, firmware_image, install_remedy
-from tilenca.commands.arguments import add_model_argument, count, seed, share, size
+from tilenca.commands.arguments import add_condition_arguments, add_model_argument, count, seed, size
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY, validate
@@ -77,9 +77,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="fast: the firmware's core on this machine; float: the PyTorch model; emulator: the ELF",
     )
     parser.add_argument(
-        "--schedule", choices=("random", "clock"), default="clock", help="the paper's, or the tiles' clocks"
-    )
-    parser.add_argument(
         "--steps", type=count, default=CONVERGED_BY, metavar="N", help=f"updates per tile ({CONVERGED_BY})"
     )
     parser.add_argument("--runs", type=count, metavar="N", help="runs per drawing (100; emulator: 1)")
@@ -97,16 +94,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exam", dest="suite", action="store_true", help=argparse.SUPPRESS
     )  # its name in 0.1
-    parser.add_argument("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1")
-    parser.add_argument(
-        "--lost",
-        choices=("held", "zero"),
-        default="held",
-        help="a lost message reads as the last one, or as zero",
-    )
-    parser.add_argument(
-        "--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1"
-    )
+    add_condition_arguments(parser)
     parser.add_argument(
         "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
     )

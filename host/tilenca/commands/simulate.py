@@ -15,7 +15,7 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import add_model_argument, count, seed, share, whole
+from tilenca.commands.arguments import add_condition_arguments, add_model_argument, count, seed, whole
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
@@ -57,20 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--steps", type=count, default=DEFAULT_STEPS, metavar="N", help=f"updates per tile ({DEFAULT_STEPS})")
     add("--runs", type=count, metavar="N", help=f"runs per shape ({RUNS}; --array, --watch: 1)")
-    add(
-        "--schedule",
-        choices=("random", "clock"),
-        default="clock",
-        help="the paper's, or the tiles' clocks (clock)",
-    )
-    add("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1 (0)")
-    add(
-        "--lost",
-        choices=("held", "zero"),
-        default="held",
-        help="a lost message reads as the last one, or as zero (held)",
-    )
-    add("--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1 (0)")
+    add_condition_arguments(parser)
     add("--seed", type=seed, default=1, metavar="N", help="same seed, same runs (1)")
     add("--threads", type=whole(1, MAX_THREADS), metavar="N", help="threads (one per processor)")
     look = parser.add_mutually_exclusive_group()

@@ -109,15 +109,6 @@ def screen_colour(duty: Duty) -> tuple[float, float, float]:
     return brightness(duty[0]), brightness(duty[1]), brightness(duty[2])
 
 
-def glyph(label: str) -> int:
-    """The segments that show `label`.
-
-    Raises:
-        KeyError: a 7-segment digit has no such character.
-    """
-    return GLYPHS[label]
-
-
 def label_of_glyph(segments: int, known: tuple[str, ...] = ()) -> str:
     """The character that lit `segments` show; "" for a dark display, "?" for no known character.
 
