@@ -5,7 +5,7 @@ import numpy as np
 from support.training import SMOKE, trainer
 from tilenca.base import paths
 from tilenca.shapes.batch import load_drawings
-from tilenca.training.curriculum import Curriculum
+from tilenca.training.curriculum import DRAWN, Curriculum
 from tilenca.training.pool import Pools
 
 
@@ -14,7 +14,7 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
     for _ in range(30):
         learner.step()
     for pool in (learner.pools.perturbed, learner.pools.undisturbed):
-        sizes = learner.drawings.sizes[pool.drawing]
+        sizes = learner.pools.drawings.sizes[pool.drawing]
         for states, size in zip(pool.states, sizes, strict=True):
             assert not states[size:].any()
         assert np.abs(pool.states).max() <= 127 / 64
@@ -22,7 +22,8 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
 
 def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
     drawings = load_drawings([paths.DEFAULT_SHAPES])
-    even = Curriculum(drawings, np.full(len(drawings), 1 / len(drawings)), np.ones(len(drawings), np.bool_))
+    some = len(drawings)
+    even = Curriculum(drawings, np.full(some, DRAWN), np.full(some, 1 / some), np.arange(some))
     pools = Pools(SMOKE, even, 21, np.random.default_rng(1))
     four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
     kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])

@@ -3,7 +3,8 @@
 A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows, `#` a tile and `.` or a blank
 none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
 labels in order of first appearance. A table `[sizes]` lists other sizes at which the task's drawings keep
-their class (`tilenca.shapes.sizes`).
+their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawings of a class may differ
+(`tilenca.shapes.vary`).
 """
 
 import re
@@ -18,7 +19,9 @@ from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
 from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
+from tilenca.shapes.skeleton import Skeleton
 from tilenca.shapes.stretch import stretch
+from tilenca.shapes.vary import Vary, read_forms, read_vary
 
 EMPTY = ".", " "
 UNKNOWN = "-"  # the label of drawings of no class
@@ -70,6 +73,8 @@ class Task:
     shapes: tuple[Shape, ...]
     labels: tuple[str, ...]
     sizes: Sizes = field(default_factory=Sizes)
+    vary: Vary | None = None
+    forms: tuple[tuple[str, Skeleton], ...] = ()
 
     def find(self, name: str) -> Shape:
         """The shape called `name` (`4`, or `4@2` for the second drawing of "4").
@@ -115,13 +120,17 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         raise UsageError(f"{path}: not valid TOML: {error}") from error
     tables = document.pop("shape", None)
     sizes = read_sizes(path, document.pop("sizes", {}))
+    vary = read_vary(path, document.pop("vary")) if "vary" in document else None
+    forms = document.pop("forms", {})
     if document:
         raise UsageError(
-            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables and [sizes]"
+            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables, "
+            "[sizes], [vary] and [forms]"
         )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
-    return replace(_task(path, tables, list(_table_lines(text)), max_classes), sizes=sizes)
+    task = _task(path, tables, list(_table_lines(text)), max_classes)
+    return replace(task, sizes=sizes, vary=vary, forms=read_forms(path, forms, task.labels))
 
 
 def _task(
