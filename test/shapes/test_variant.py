@@ -26,8 +26,8 @@ def some(seed: int, count: int, split: str = TRAINED) -> list[Variant]:
 def test_variants_keep_to_the_limits_and_never_have_a_size_that_is_held_out() -> None:
     drawn = some(1, 60)
     extents = {(len(variant.rows), len(variant.rows[0])) for variant in drawn}
-    assert max(rows for rows, _ in extents) <= VARIANTS.vary.most[0]
-    assert max(cols for _, cols in extents) <= VARIANTS.vary.most[1]
+    assert max(rows for rows, _ in extents) <= VARIANTS.most[0]
+    assert max(cols for _, cols in extents) <= VARIANTS.most[1]
     assert not extents & {(8, 5), (9, 7), (11, 9), (13, 10), (14, 12)}
     assert {variant.thickness for variant in drawn} == {1, 2, 3}
     assert all(connected(cells_of(variant.rows)) for variant in drawn)

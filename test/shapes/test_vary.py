@@ -6,6 +6,7 @@ import pytest
 
 from tilenca.base.errors import UsageError
 from tilenca.shapes.file import load_task
+from tilenca.shapes.sizes import Sizes
 from tilenca.shapes.vary import Vary
 
 SHAPE = '\n[[shape]]\nlabel = "L"\ngrid = """\n#.\n##\n"""\n'
@@ -17,9 +18,26 @@ def read(folder: Path, text: str) -> Vary | None:
     return load_task(file).vary
 
 
-def test_a_file_without_the_table_says_nothing_and_an_empty_one_has_defaults(tmp_path: Path) -> None:
-    assert read(tmp_path, "") is None
+def test_what_a_file_leaves_out_has_a_default_and_false_means_none(tmp_path: Path) -> None:
+    assert read(tmp_path, "") == Vary()
     assert read(tmp_path, "[vary]") == Vary()
+    assert read(tmp_path, "vary = false") is None
+
+
+@pytest.mark.parametrize(
+    ("vary", "sizes", "limits"),
+    [
+        (Vary(), Sizes(), ((4, 3), (9, 7))),
+        (Vary(), Sizes(trained=((4, 6), (8, 5))), ((4, 4), (8, 6))),
+        (Vary(least=(3, 3), most=(6, 6)), Sizes(trained=((4, 6), (8, 5))), ((3, 3), (6, 6))),
+        (Vary(least=(20, 20)), Sizes(), ((20, 20), (20, 20))),
+    ],
+)
+def test_sizes_follow_the_file_unless_they_are_given(
+    vary: Vary, sizes: Sizes, limits: tuple[tuple[int, int], tuple[int, int]]
+) -> None:
+    sized = vary.sized((5, 4), sizes)
+    assert (sized.least, sized.most) == limits
 
 
 def test_every_key_is_read(tmp_path: Path) -> None:
@@ -41,7 +59,7 @@ feet = 0.7"""
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        ("vary = 3", r"write \[vary\] on a line"),
+        ("vary = true", r"write \[vary\] on a line"),
         ("[vary]\nwobble = 1", r"\[vary\] has no 'wobble'; it has from, to, thickness"),
         ("[vary]\nslant = 2", "slant 2; give a number from 0 to 1"),
         ("[vary]\nslant = true", "slant True; give a number"),

@@ -85,7 +85,7 @@ def _entry(shape: Shape) -> dict[str, Any]:
 def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[str, list[tuple[str, ...]]]:
     """Some variants of every class, as training draws them."""
     if drawings.variants is None:
-        raise UsageError(f"{path}: says nothing about variants; add a table [vary], which may be empty")
+        raise UsageError(f"{path}: says vary = false, so its classes are just its drawings; leave --vary out")
     random = np.random.default_rng(number)
     found: dict[str, list[tuple[str, ...]]] = {}
     for label in drawings.labels:

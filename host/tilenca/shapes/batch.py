@@ -258,15 +258,15 @@ def load_training_task(
 
 
 def _variants_of(task: Task) -> Variants | None:
-    """What the classes of a file may become; None where it says nothing about that."""
+    """What the classes of a file may become; None where they are just its drawings."""
     if task.vary is None:
         return None
     # The skeletons of all drawings of a file share one unit square, so that narrow ones stay narrow.
-    largest = np.max([(len(shape.rows[0]) - 1, len(shape.rows) - 1, 1, 1) for shape in task.shapes], axis=0)
-    unit = np.maximum(largest[:2], 1)
+    rows, cols = max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
+    unit = np.maximum((cols - 1, rows - 1), 1)
     drawn = [(shape.label, of_rows(shape.rows)) for shape in task.shapes]
     scaled = [(label, replace(skeleton, points=skeleton.points / unit)) for label, skeleton in drawn]
-    return Variants([*scaled, *task.forms], task.vary, task.sizes.held_out)
+    return Variants([*scaled, *task.forms], task.vary.sized((rows, cols), task.sizes), task.sizes.held_out)
 
 
 def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:

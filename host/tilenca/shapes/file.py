@@ -73,7 +73,7 @@ class Task:
     shapes: tuple[Shape, ...]
     labels: tuple[str, ...]
     sizes: Sizes = field(default_factory=Sizes)
-    vary: Vary | None = None
+    vary: Vary | None = field(default_factory=Vary)
     forms: tuple[tuple[str, Skeleton], ...] = ()
 
     def find(self, name: str) -> Shape:
@@ -120,7 +120,7 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         raise UsageError(f"{path}: not valid TOML: {error}") from error
     tables = document.pop("shape", None)
     sizes = read_sizes(path, document.pop("sizes", {}))
-    vary = read_vary(path, document.pop("vary")) if "vary" in document else None
+    vary = read_vary(path, document.pop("vary", {}))
     forms = document.pop("forms", {})
     if document:
         raise UsageError(

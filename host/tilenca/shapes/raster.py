@@ -44,12 +44,12 @@ def draw(
 
 def _cells(stroke: Points, flat: bool) -> list[tuple[int, int]]:
     """(row, column) of the cells along a polyline, each beside the one before."""
-    lengths = np.abs(np.diff(stroke, axis=0)).max(axis=1)
-    parts = [
-        a + np.linspace(0, 1, max(2, round(length / STEP) + 1))[:, None] * (b - a)
-        for a, b, length in zip(stroke, stroke[1:], lengths, strict=False)
-    ]
-    rounded = np.floor(np.concatenate(parts) + 0.5).astype(np.int64)
+    along = np.diff(stroke, axis=0)
+    counts = np.maximum(np.rint(np.abs(along).max(axis=1) / STEP).astype(np.int64), 1)
+    part = np.repeat(np.arange(len(along)), counts)
+    share = (np.arange(len(part)) - (np.cumsum(counts) - counts)[part]) / counts[part]
+    points = np.concatenate((stroke[part] + share[:, None] * along[part], stroke[-1:]))
+    rounded = np.floor(points + 0.5).astype(np.int64)
     cells: list[tuple[int, int]] = []
     for col, row in rounded[np.append(True, (np.diff(rounded, axis=0) != 0).any(axis=1))].tolist():
         if cells and cells[-1][0] != row and cells[-1][1] != col:

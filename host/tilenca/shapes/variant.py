@@ -45,14 +45,16 @@ class Variants:
 
     Args:
         skeletons: (label, skeleton) in a unit square; a class may have several.
-        vary: how far they may differ.
+        vary: how far they may differ; with sizes.
         avoid: sizes of bounding boxes that are never drawn.
     """
 
     def __init__(
         self, skeletons: Sequence[tuple[str, Skeleton]], vary: Vary, avoid: Sequence[Size] = ()
     ) -> None:
-        self.vary = vary
+        if vary.least is None or vary.most is None:
+            raise ValueError("variants need a smallest and a largest size, see Vary.sized")
+        self.vary, self.least, self.most = vary, vary.least, vary.most
         self.labels = tuple(dict.fromkeys(label for label, _ in skeletons))
         self.skeletons = tuple(skeletons)
         self._of = {label: [s for of, s in skeletons if of == label] for label in self.labels}
@@ -92,7 +94,7 @@ class Variants:
         return pen[0], pen[1]
 
     def _size(self, form: Form, pen: tuple[int, int], random: np.random.Generator) -> Size:
-        (low, slim), (high, wide) = self.vary.least, self.vary.most
+        (low, slim), (high, wide) = self.least, self.most
         rows = int(random.integers(low, high + 1))
         least = min(max(slim, round(SLIMMEST * rows)), wide)
         cols = int(random.integers(least, max(least, min(wide, round(WIDEST * rows))) + 1))

@@ -3,7 +3,7 @@
 [vary]
 from = "5x3"          # the smallest drawing, rows x columns
 to = "14x12"          # and the largest
-thickness = [1, 3]    # of the strokes, in tiles
+thickness = [1, 2]    # of the strokes, in tiles
 slant = 0.3           # how far the top may lean to a side, as a share of the height
 turn = 10             # degrees by which a drawing may be turned
 bars = 0.3            # how much the distances between strokes differ: standard deviation of their logarithm
@@ -12,6 +12,8 @@ corners = 0.5         # the share of drawings with cut or rounded corners
 ends = 0.3            # how much longer or shorter free ends become, as a share of the size
 hooks = 0.2           # the share of free ends that bend
 feet = 0.15           # the share of free ends at the top or bottom with a crossbar
+
+`vary = false` instead of the table keeps a class to its drawings.
 
 [forms]               # other forms of classes: strokes in a unit square, x to the right and y down
 "4" = ["0,0 0,.6 1,.6 | .75,.3 .75,1", "1,0 0,.6 1,.6 | 1,0 1,1"]
@@ -23,10 +25,11 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import UsageError
-from tilenca.shapes.sizes import Size, parse_size, size_name
+from tilenca.shapes.sizes import Size, Sizes, parse_size, size_name
 from tilenca.shapes.skeleton import Skeleton, of_strokes
 
 THICKEST = 9
+SMALLER, LARGER = 0.8, 1.8  # times the drawn size
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,8 @@ class Vary:
     """How far drawings of a class may differ; each number is explained above.
 
     Attributes:
-        least: the smallest drawing, rows and columns.
-        most: the largest.
+        least: the smallest drawing, rows and columns; None: as `sized` decides.
+        most: the largest; likewise.
         thickness: least and most thickness of the strokes, in tiles.
         slant: shift of the top, as a share of the height.
         turn: degrees.
@@ -47,8 +50,8 @@ class Vary:
         feet: share of free ends at the top or bottom with a crossbar.
     """
 
-    least: Size = (5, 3)
-    most: Size = (12, 10)
+    least: Size | None = None
+    most: Size | None = None
     thickness: tuple[int, int] = (1, 2)
     slant: float = 0.15
     turn: float = 5.0
@@ -59,6 +62,25 @@ class Vary:
     hooks: float = 0.0
     feet: float = 0.0
 
+    def sized(self, drawn: Size, sizes: Sizes) -> "Vary":
+        """The same with a smallest and a largest size.
+
+        Args:
+            drawn: most rows and columns of the file's drawings.
+            sizes: of the file; its trained sizes are the limits, or else the drawn size times `SMALLER` and
+                `LARGER`.
+        """
+        trained = (
+            (*sizes.trained, drawn)
+            if sizes.trained
+            else tuple((round(factor * drawn[0]), round(factor * drawn[1])) for factor in (SMALLER, LARGER))
+        )
+        least, most = (
+            (pick(rows for rows, _ in trained), pick(cols for _, cols in trained)) for pick in (min, max)
+        )
+        least, most = self.least or least, self.most or most
+        return replace(self, least=least, most=(max(least[0], most[0]), max(least[1], most[1])))
+
 
 # The largest value of every number; all begin at 0.
 LIMITS = {
@@ -68,14 +90,19 @@ LIMITS = {
 KEYS = ("from", "to", *(field.name for field in fields(Vary) if field.name not in ("least", "most")))
 
 
-def read_vary(path: Path, table: object) -> Vary:
+def read_vary(path: Path, table: object) -> Vary | None:
     """Checks the table `[vary]` of a shape file; what it leaves out has a default.
+
+    Returns:
+        None for `vary = false`: the drawings are all there is.
 
     Raises:
         UsageError: an unknown key, or a value out of range; the message names file, key and remedy.
     """
+    if table is False:
+        return None
     if not isinstance(table, dict):
-        raise UsageError(f"{path}: vary must be a table; write [vary] on a line of its own")
+        raise UsageError(f"{path}: vary must be a table or false; write [vary] on a line of its own")
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in KEYS:
@@ -85,7 +112,7 @@ def read_vary(path: Path, table: object) -> Vary:
         else:
             changes[key] = (_thickness if key == "thickness" else _number)(path, key, value)
     vary = replace(Vary(), **changes)
-    if not (vary.least[0] <= vary.most[0] and vary.least[1] <= vary.most[1]):
+    if vary.least and vary.most and not (vary.least[0] <= vary.most[0] and vary.least[1] <= vary.most[1]):
         raise UsageError(
             f"{path}: [vary] from {size_name(vary.least)} is larger than to {size_name(vary.most)}"
         )

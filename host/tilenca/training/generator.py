@@ -17,7 +17,7 @@ from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.form import make_form
 from tilenca.shapes.lattice import random_skeleton
 from tilenca.shapes.likeness import Likeness
-from tilenca.shapes.sizes import Size
+from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import TRAINED, Variants, split_of
 from tilenca.shapes.variants import rows_of
@@ -57,19 +57,24 @@ class Generator:
     ) -> None:
         self.kinds = tuple(kinds)
         self._variants: Variants | None = task.variants
-        self._vary = Vary() if self._variants is None else self._variants.vary
+        extents = [(len(shape.rows), len(shape.rows[0])) for shape in whole]
+        largest = max(rows for rows, _ in extents), max(cols for _, cols in extents)
+        vary = Vary(thickness=(1, 1)) if self._variants is None else self._variants.vary
+        self._vary = vary.sized(largest, Sizes())
         self._whole = list(whole)
         self._drawn = list(task.shapes)
         self._known = known_of(task.shapes)
         self._labels = [label for label in task.labels if label != UNKNOWN]
         self._taken: dict[Rows, str] = {shape.rows: shape.label for shape in whole}
-        drawn = (self._varied(random) for _ in range(2 * indexed))
-        index = [shape.rows for shape in (*self._whole, *drawn) if shape is not None]
+        drawn = [shape for shape in (self._varied(random) for _ in range(2 * indexed)) if shape is not None]
+        index = [shape.rows for shape in (*self._whole, *drawn)]
+        for shape in drawn:  # what came up for two classes belongs to neither
+            if self._taken.setdefault(shape.rows, shape.label) != shape.label:
+                self._taken[shape.rows] = UNLABELLED
         self._likeness = Likeness(index)
         self._close, self._far = _quantiles(index, random)
-        extents = [(len(shape.rows), len(shape.rows[0])) for shape in self._whole]
         self._sizes: list[Size] = extents if self._variants is None else []
-        tallest = max(rows * cols for rows, cols in (*extents, self._vary.most))
+        tallest = max(rows * cols for rows, cols in (*extents, self._vary.most or largest))
         self.most_tiles = min(tallest, MOST_TILES) + 2 * MOST_EDITS
 
     def draw(self, kind: str, random: np.random.Generator) -> Shape:
@@ -182,6 +187,8 @@ class Generator:
         if self._sizes:
             height, width = self._sizes[int(random.integers(len(self._sizes)))]
             return height + int(random.integers(-1, 2)) or 1, width + int(random.integers(-1, 2)) or 1
+        assert self._vary.least is not None
+        assert self._vary.most is not None
         (low, slim), (high, wide) = self._vary.least, self._vary.most
         height = int(random.integers(low - 1, high + 1))
         return max(1, height), int(random.integers(slim, max(slim, min(wide, height)) + 1))
