@@ -3,10 +3,13 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from tilenca import cli
 from tilenca.base import paths
+from tilenca.shapes.file import load_task
 from tilenca.shapes.variant import TRAINED, split_of
 
 
@@ -55,3 +58,22 @@ def test_more_classes_than_the_state_holds_are_a_problem_not_an_error(
     assert "26 classes" in problem
     assert "--state" in problem
     assert problem in run(capsys, str(letters))
+
+
+def test_a_picture_becomes_a_table_that_a_shape_file_takes(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    ink = np.kron(np.array([[1, 1, 1], [0, 0, 1], [0, 0, 1]], np.uint8), np.ones((30, 30), np.uint8))
+    Image.fromarray(255 - 255 * np.pad(ink, 7)).save(tmp_path / "seven.png")
+    out = run(capsys, "--image", str(tmp_path / "seven.png"), "--size", "6x6", "--label", "7")
+    (tmp_path / "mine.toml").write_text(out)
+    (shape,) = load_task(tmp_path / "mine.toml").shapes
+    assert (shape.label, shape.rows) == ("7", ("######",) * 2 + ("....##",) * 4)
+    report = json.loads(run(capsys, "--image", str(tmp_path / "seven.png"), "--json"))
+    assert (report["rows"], report["cols"]) == (10, 10)
+
+
+def test_a_picture_without_enough_ink_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    Image.fromarray(np.tile(np.array([0, 255], np.uint8), (20, 10))).save(tmp_path / "grey.png")
+    assert cli.main(["shapes", "--image", str(tmp_path / "grey.png"), "--size", "2x2", "--ink", "0.9"]) == 2
+    assert "give a smaller --ink" in capsys.readouterr().err

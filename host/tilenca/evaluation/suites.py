@@ -14,10 +14,13 @@ from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes, size_name
+from tilenca.shapes.variant import CHOOSING, LAST
 from tilenca.shapes.variants import Known
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
+VARIANTS = {CHOOSING: 12, LAST: 40}  # of each class
+VARIANT_TRIES = 200  # for each of them
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 
 
@@ -53,6 +56,7 @@ class Suite:
         damaged: one tile missing where that leaves no doubt about the class; None: no such case.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
+        varied: variants of held-out forms; None: the classes are just their drawings.
     """
 
     drawn: tuple[Case, ...]
@@ -60,6 +64,7 @@ class Suite:
     damaged: Case | None
     unknown: tuple[Case, ...]
     larger: tuple[Case, ...]
+    varied: Case | None = None
 
 
 @dataclass(frozen=True)
@@ -77,7 +82,9 @@ class Aims:
     unknown: bool = False
 
 
-def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Suite:
+def make_suite(
+    task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
+) -> Suite:
     """Makes the suite of a task.
 
     Args:
@@ -85,7 +92,8 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         sizes: of the task.
         labels: the model's.
         aims: of its training.
-        seed: of the unknown drawings.
+        seed: of the unknown drawings and of the variants.
+        split: which held-out forms to ask: those for `CHOOSING` a model, or those for the `LAST` measurement.
     """
     task = replace(task, labels=labels)
     first = task.group(0)
@@ -101,7 +109,28 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         Case("damaged", "one tile missing", task.of(less), 60, aimed=aims.damaged) if less else None,
         tuple(_unknown_cases(task, first, known, aims, seed)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
+        _varied_case(task, seed, split),
     )
+
+
+def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
+    """Variants of forms that training never draws."""
+    if task.variants is None:
+        return None
+    random = np.random.default_rng(seed)
+    found: dict[tuple[str, ...], Shape] = {}
+    for label in task.variants.labels:
+        wanted = len(found) + VARIANTS[split]
+        for _ in range(VARIANT_TRIES * VARIANTS[split]):
+            if len(found) == wanted:
+                break
+            variant = task.variants.draw(label, split, random)
+            if variant is not None:
+                found.setdefault(
+                    variant.rows, Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
+                )
+    name = f"held-out forms, {size_name(task.variants.least)} to {size_name(task.variants.most)}"
+    return Case("varied", name, task.of(list(found.values())), LARGE_STEPS, held_out=True) if found else None
 
 
 def _steps(size: Size) -> int:

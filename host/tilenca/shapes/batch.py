@@ -19,6 +19,7 @@ from tilenca.base.sides import SIDES
 from tilenca.shapes.file import Shape, Task, load_task
 from tilenca.shapes.sizes import Sizes, size_name
 from tilenca.shapes.skeleton import of_rows
+from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import Variants
 
 Indices = NDArray[np.int64]
@@ -191,8 +192,7 @@ def _join(
     paths: Sequence[Path], tasks: Iterable[Task], max_classes: int | None, labels: Sequence[str] | None
 ) -> Drawings:
     """`load_drawings` of tasks; each task is taken only at its file's turn, so that errors come in order."""
-    shapes: list[Shape] = []
-    groups: list[int] = []
+    shapes: dict[Rows, tuple[Shape, int]] = {}
     found: dict[str, None] = {}
     coming = iter(tasks)
     for group, path in enumerate(paths):
@@ -201,11 +201,12 @@ def _join(
                 f"{path}: another file has that name too, and tables name files by it; rename one"
             )
         for shape in next(coming).shapes:
-            twin = next((n for n, other in enumerate(shapes) if other.rows == shape.rows), None)
-            if twin is not None and shapes[twin].label != shape.label:
+            # The same drawing of the same label in two files is one drawing.
+            twin, of = shapes.setdefault(shape.rows, (shape, group))
+            if twin.label != shape.label:
                 raise UsageError(
-                    f"{path}: '{shape.name}' is drawn exactly like '{shapes[twin].name}' of "
-                    f"{paths[groups[twin]]}; remove or redraw one"
+                    f"{path}: '{shape.name}' is drawn exactly like '{twin.name}' of "
+                    f"{paths[of]}; remove or redraw one"
                 )
             if labels is not None and shape.label not in labels:
                 raise UsageError(
@@ -213,10 +214,7 @@ def _join(
                     "train one on this file with `tilenca train`"
                 )
             found.setdefault(shape.label)
-            if twin is None:  # the same drawing of the same label in two files is one drawing
-                shapes.append(shape)
-                groups.append(group)
-        if group not in groups:
+        if all(of != group for _, of in shapes.values()):
             raise UsageError(f"{path}: the files before it have all of its drawings; leave it out")
         if max_classes is not None and len(found) > max_classes:
             raise UsageError(
@@ -226,7 +224,8 @@ def _join(
     sources = tuple(
         {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()} for path in paths
     )
-    return Drawings(tuple(shapes), tuple(groups), tuple(found) if labels is None else tuple(labels), sources)
+    every, groups = zip(*shapes.values(), strict=True)
+    return Drawings(every, groups, tuple(found) if labels is None else tuple(labels), sources)
 
 
 def load_training_task(

@@ -9,6 +9,7 @@ their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawing
 
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -136,8 +137,9 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
 def _task(
     path: Path, tables: list[dict[str, object]], lines: list[tuple[int, int]], max_classes: int | None
 ) -> Task:
-    shapes: list[Shape] = []
+    shapes: dict[tuple[str, ...], Shape] = {}
     labels: list[str] = []
+    drawn: Counter[str] = Counter()
     for number, table in enumerate(tables):
         # Tables written in an unusual form (inline, quoted keys) have no known line: name their number.
         header, grid_line = lines[number] if len(lines) == len(tables) else (0, 0)
@@ -153,14 +155,13 @@ def _task(
                 f"{where}: '{label}' is class {len(labels)}, the model's state has room for {max_classes}; "
                 "draw fewer classes or train with a wider --state"
             )
-        for other in shapes:
-            if other.rows == rows:
-                raise UsageError(
-                    f"{where}: '{label}' is drawn exactly like '{other.name}'; remove or redraw one"
-                )
-        drawn = sum(other.label == label for other in shapes)
-        shapes.append(Shape(label, rows, label if drawn == 0 else f"{label}@{drawn + 1}"))
-    return Task(path, tuple(shapes), tuple(labels))
+        if rows in shapes:
+            raise UsageError(
+                f"{where}: '{label}' is drawn exactly like '{shapes[rows].name}'; remove or redraw one"
+            )
+        drawn[label] += 1
+        shapes[rows] = Shape(label, rows, label if drawn[label] == 1 else f"{label}@{drawn[label]}")
+    return Task(path, tuple(shapes.values()), tuple(labels))
 
 
 def _label(where: str, table: dict[str, object], labels: list[str]) -> str:

@@ -24,7 +24,7 @@ from tilenca.shapes.variants import rows_of
 from tilenca.shapes.vary import Vary
 
 VARIED, DAMAGED, OF_NO_CLASS, FREE = "varied", "damaged", "of no class", "unlabelled"
-CLOSE, FAR = 0.3, 0.9  # quantiles of the distances between drawings of one class and their nearest
+CLOSE, FAR = 0.3, 0.97  # quantiles of the distances between drawings of one class and their nearest
 ONE_TILE, DEAD = (
     0.5,
     (0.03, 0.16),
@@ -33,6 +33,8 @@ TORN = 0.3  # share of damaged drawings that may be torn apart
 CLEAR = 30  # tiles of a drawing in which one tile too many leaves no doubt
 MOST_EDITS = 3
 MOST_TILES = 255  # of a drawing, as many as tiles can have different ids
+INDEXED = 2000  # drawings of the files that drawings of no class are compared with
+FEW = 200  # drawings of a task that are compared with each other, tile by tile
 TRIES = 200
 
 
@@ -63,11 +65,13 @@ class Generator:
         self._vary = vary.sized(largest, Sizes())
         self._whole = list(whole)
         self._drawn = list(task.shapes)
-        self._known = known_of(task.shapes)
+        # Of thousands of drawings each has many relatives, and one tile more or less proves nothing.
+        self._known = known_of(task.shapes) if len(task.shapes) <= FEW else None
         self._labels = [label for label in task.labels if label != UNKNOWN]
         self._taken: dict[Rows, str] = {shape.rows: shape.label for shape in whole}
         drawn = [shape for shape in (self._varied(random) for _ in range(2 * indexed)) if shape is not None]
-        index = [shape.rows for shape in (*self._whole, *drawn)]
+        some = random.permutation(len(self._whole))[:INDEXED]
+        index = [shape.rows for shape in (*(self._whole[number] for number in sorted(some)), *drawn)]
         for shape in drawn:  # what came up for two classes belongs to neither
             if self._taken.setdefault(shape.rows, shape.label) != shape.label:
                 self._taken[shape.rows] = UNLABELLED
@@ -128,7 +132,7 @@ class Generator:
     def _without_one(
         self, shape: Shape, cells: list[tuple[int, int]], random: np.random.Generator
     ) -> Rows | None:
-        if self._taken.get(shape.rows) == shape.label and shape in self._drawn:
+        if self._known is not None and shape in self._drawn:
             clear = self._known.damaged(shape.label, shape.rows)
             return clear[int(random.integers(len(clear)))] if clear else None
         loose = removable(cells)

@@ -23,6 +23,7 @@ Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
 UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
 SAME_SCALE = 2, 3  # rows and columns by which drawings may differ that are rebuilt into each other
+PATIENCE = 1000  # ticks for which a grid that does not agree is left alone
 CONVERGED_AFTER = 40  # ticks without a disturbance after which a wrong tile counts as a failure
 
 
@@ -35,12 +36,14 @@ class Pool:
         states: (P, M, C) float32, states of its cells, unused places zero.
         age: (P,) int64, ticks since the last disturbance.
         lifetime: (P,) int64, ticks after which an undisturbed grid starts anew.
+        wrong: (P,) bool, grids that should have converged and had a wrong tile when they were last seen.
     """
 
     drawing: Numbers
     states: States
     age: Numbers
     lifetime: Numbers
+    wrong: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -140,6 +143,9 @@ class Pools:
             self._refill(self.perturbed)
             return np.arange(count), 0, 0
         taken = self.random.choice(recipe.perturbed_pool, count, replace=False)
+        # Grids that do not agree go on until they do, and others are disturbed instead.
+        stays = self.perturbed.wrong[taken] & (self.perturbed.age[taken] < PATIENCE)
+        taken = np.concatenate((taken[~stays], taken[stays]))
         resets = round(recipe.reset * count)
         switched = resets + round(recipe.switch * count)
         disturbed = switched + round(recipe.state_shuffle * count)
@@ -180,6 +186,7 @@ class Pools:
         self.undisturbed.age[taken.undisturbed] += ticks[count:]
         # A grid that was disturbed a moment ago may be wrong; converged grids must be right.
         converged = self.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
+        self.perturbed.wrong[taken.perturbed] = converged & ~right[:count]
         seen = self.curriculum.failing[self.perturbed.drawing[taken.perturbed][converged]]
         self.failures[seen] += FAILURE_EMA * (~right[:count][converged] - self.failures[seen])
 
@@ -207,7 +214,9 @@ class Pools:
     def _empty(self, count: int) -> Pool:
         shape = (count, self.curriculum.most_tiles, self.channels)
         zeros = np.zeros(count, np.int64)
-        return Pool(zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy())
+        return Pool(
+            zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy(), np.zeros(count, np.bool_)
+        )
 
     def _refill(self, pool: Pool) -> None:
         for number in range(len(pool.age)):
@@ -263,6 +272,7 @@ class Pools:
         self.perturbed.states[number] = 0.0
         self.perturbed.states[number, : len(states)] = states
         self.perturbed.age[number] = CONVERGED_AFTER
+        self.perturbed.wrong[number] = True
 
     def reset(self, pool: Pool, number: int) -> None:
         """Starts a grid anew with any drawing, every tile in its seed state."""
