@@ -51,7 +51,9 @@ def test_states_go_through_integers_and_back_unharmed(pools: Pools) -> None:
     old = refreshed(pools, pools.undisturbed, (40, 40))
     random = np.random.default_rng(3)
     random.uniform()  # the number of steps
-    simulator = Simulator(FastEngine(MODEL), pools.drawings, old.drawing, CLOCKS, random)
+    engine = FastEngine(MODEL)
+    seeds = engine.seed(int(pools.drawings.sizes[old.drawing].sum()))
+    simulator = Simulator(engine, pools.drawings, old.drawing, CLOCKS, random, seeds)
     simulator.run(40)
     batch = simulator.batch
     assert np.array_equal(old.states[batch.sample, batch.place] * 8192, simulator.states)
