@@ -10,6 +10,7 @@ from tilenca.evaluation.suites import make_suite
 from tilenca.shapes import variants
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.stretch import smallest
 from tilenca.training.curriculum import build, labels_of
 from tilenca.training.recipes import RECIPES, aims_of
 
@@ -27,10 +28,16 @@ def test_the_curriculum_has_every_kind_in_its_share_and_nothing_held_out() -> No
     assert weights[unknown].sum() == pytest.approx(FULL.unknown)
     assert weights[damaged].sum() == pytest.approx(FULL.damaged)
     assert {shape.label for shape in shapes} == {*"0123456789", UNKNOWN}
-    assert not any(variants.held_out(shape.rows) for shape, none in zip(shapes, unknown, strict=True) if none)
+    made = [shape for shape, some in zip(shapes, unknown | damaged, strict=True) if some]
+    assert not any(variants.held_out(shape.rows) for shape in made)
     asked = make_suite(task, sizes, task.labels, aims_of(FULL), seed=1)
-    new = {s.rows for case in (*asked.sizes, *asked.unknown) if case.held_out for s in case.drawings.shapes}
+    cases = (*asked.sizes, *asked.damaged, *asked.unknown)
+    new = {s.rows for case in cases if case.held_out for s in case.drawings.shapes}
     assert new.isdisjoint(shape.rows for shape in shapes)
+    forms = {smallest(shape.rows) for shape in shapes}
+    for case in (*asked.damaged, *asked.unknown):
+        if case.held_out:
+            assert forms.isdisjoint(smallest(shape.rows) for shape in case.drawings.shapes), case.name
     drawn = {(len(shape.rows), len(shape.rows[0])) for shape in shapes if shape.label == "8"}
     assert (7, 6) in drawn
     assert not drawn & set(sizes.held_out)

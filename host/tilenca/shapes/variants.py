@@ -3,7 +3,9 @@
 Everything here works on rows of `#` and `.`, trimmed to the tiles. numpy only.
 """
 
+import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -13,6 +15,8 @@ from tilenca.shapes.stretch import Rows, smallest
 
 Cell = tuple[int, int]
 GIVE_UP = 300  # draws in a row without a new drawing
+PARTS = 8
+Part = Literal["training", "selection", "final"]
 
 
 def rows_of(cells: Iterable[Cell]) -> Rows:
@@ -121,9 +125,19 @@ def some_segments(random: np.random.Generator, strokes: Sequence[frozenset[Cell]
     return rows_of(tiles) if tiles and connected(tiles) else None
 
 
+def part_of(rows: Rows) -> Part:
+    """What a drawing may be used for: all drawings of one form, whatever their size, are for the same.
+
+    Of all forms an eighth is for the measurements during training ("selection"), another eighth for those of
+    the final model ("final"), and the rest is for training.
+    """
+    number = zlib.crc32("/".join(smallest(rows)).encode()) % PARTS
+    return "final" if number == 0 else "selection" if number == 1 else "training"
+
+
 def held_out(rows: Rows) -> bool:
-    """Whether a drawing of no class is kept from training for measurements: a quarter of all, by content."""
-    return sum(index * ord(mark) for index, mark in enumerate("/".join(rows), start=1)) % 4 == 0
+    """Whether a drawing's form is kept from training, for measurements."""
+    return part_of(rows) != "training"
 
 
 def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Rows], bool]) -> list[Rows]:

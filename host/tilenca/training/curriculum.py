@@ -98,7 +98,7 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     fitting = sizes.within(task.largest, recipe.stretch)
     scales = _scales(task, fitting.trained + fitting.more)
     known = known_of(shape for scale in scales for shape in scale)
-    less = damaged(scales[0], known, DAMAGED) if recipe.damaged else []
+    less = damaged(scales[0], known, DAMAGED, "training") if recipe.damaged else []
     drawn = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n < len(task.sources)]
     stretched = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n >= len(task.sources)]
     parts = [
@@ -159,5 +159,5 @@ def _unknown(
     """
     for number in range(files, len(scales)) if kind.elsewhere else range(files):
         draw = kind.drawer([shape.rows for shape in scales[number]], random)
-        for rows in draw_unknown(kind.each, draw, known, held_out=False, doubtful=doubtful):
+        for rows in draw_unknown(kind.each, draw, known, "training", doubtful):
             yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")

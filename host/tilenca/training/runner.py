@@ -86,7 +86,8 @@ def train(job: Job, tell: Tell) -> Trained:
         trainer = make_trainer(job)
         recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
         check: tuple[int, int, float] | None = None
-        suite = make_suite(job.task, job.sizes, job.config.labels, aims_of(recipe), job.config.seed)
+        aims = aims_of(recipe)
+        suite = make_suite(job.task, job.sizes, job.config.labels, aims, job.config.seed, "selection")
         while not trainer.done:
             trainer.step()
             if recipe.check_every and trainer.iteration % recipe.check_every == 0:
