@@ -1,6 +1,8 @@
 """Test suites: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
 
-Training never sees the drawings of a case that is `held_out`: certain sizes and unknown drawings.
+Training never sees the drawings of a case that is `held_out`: certain sizes, and unknown and damaged drawings
+whose form is held out (`variants.part_of`), whatever their size. The measurements during training and those
+of the final model have no such form in common.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,11 +16,13 @@ from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes, size_name
-from tilenca.shapes.variants import Known
+from tilenca.shapes.variants import Part
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
+# Sizes at which a tile is missing, beside the files' own, where the task has them.
+DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
 
 
 @dataclass(frozen=True)
@@ -50,14 +54,15 @@ class Suite:
         drawn: the drawings of the files, one case for each.
         sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone
             and without drawings that are also those of a trained size (a line has no width).
-        damaged: one tile missing where that leaves no doubt about the class; None: no such case.
+        damaged: one tile missing where that leaves no doubt about the class: for several sizes the pairs of a
+            drawing and a missing tile that training may use, and those that are held out from it.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
     """
 
     drawn: tuple[Case, ...]
     sizes: tuple[Case, ...]
-    damaged: Case | None
+    damaged: tuple[Case, ...]
     unknown: tuple[Case, ...]
     larger: tuple[Case, ...]
 
@@ -77,7 +82,9 @@ class Aims:
     unknown: bool = False
 
 
-def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Suite:
+def make_suite(
+    task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, part: Part = "final"
+) -> Suite:
     """Makes the suite of a task.
 
     Args:
@@ -86,6 +93,7 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         labels: the model's.
         aims: of its training.
         seed: of the unknown drawings.
+        part: of the held-out forms: those for "selection" during training, or the "final" ones.
     """
     task = replace(task, labels=labels)
     first = task.group(0)
@@ -93,14 +101,13 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         Case("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
-    known = known_of(task.shapes)
-    less = damaged(first, known, " less one")
+    aimed = sizes.within(task.largest, aims.stretch)
     return Suite(
         drawn,
-        tuple(_size_cases(task, first, sizes, sizes.within(task.largest, aims.stretch))),
-        Case("damaged", "one tile missing", task.of(less), 60, aimed=aims.damaged) if less else None,
-        tuple(_unknown_cases(task, first, known, aims, seed)) if UNKNOWN in labels else (),
-        tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
+        tuple(_size_cases(task, first, sizes, aimed)),
+        tuple(_damaged_cases(task, first, aimed, aims, part)),
+        tuple(_unknown_cases(task, first, aims, seed, part)) if UNKNOWN in labels else (),
+        tuple(_larger(task, first, aimed)),
     )
 
 
@@ -149,10 +156,31 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
         yield Case(kind, size_name(size), task.of(at_size(first, size)), _steps(size))
 
 
+def _damaged_cases(
+    task: Drawings, first: Sequence[Shape], aimed: Sizes, aims: Aims, part: Part
+) -> Iterable[Case]:
+    """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
+    for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
+        shapes = first if size is None else at_size(first, size)
+        steps = SHORT_STEPS if size is None else _steps(size)
+        known = known_of([*task.shapes, *shapes])
+        kind = "damaged" if steps <= SHORT_STEPS else "damaged, large"
+        uses: tuple[tuple[Part, str], ...] = (
+            ("training", "pairs that training may use"),
+            (part, "new pairs"),
+        )
+        for which, name in uses:
+            if less := damaged(shapes, known, " less one", which):
+                label = f"{size_name(size or task.largest)}, one tile missing, {name}"
+                new = which == part
+                yield Case(kind, label, task.of(less), steps, held_out=new, aimed=aims.damaged)
+
+
 def _unknown_cases(
-    task: Drawings, first: Sequence[Shape], known: Known, aims: Aims, seed: int
+    task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, part: Part
 ) -> Iterable[Case]:
     random = np.random.default_rng(seed)
+    known = known_of(task.shapes)
     drawings = [shape.rows for shape in first]
 
     for name, wanted, draw in (
@@ -160,9 +188,9 @@ def _unknown_cases(
         ("halves of drawings", 100, variants.some_halves(drawings, random)),
         ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
     ):
-        if found := draw_unknown(wanted, draw, known, held_out=True):
+        if found := draw_unknown(wanted, draw, known, part):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
-            label = f"no class: {name}, never trained on"
+            label = f"no class: {name}, forms never trained on"
             yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
 
 
