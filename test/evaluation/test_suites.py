@@ -1,17 +1,12 @@
 """What a model is asked: what training never saw, and what it was trained for."""
 
-from typing import get_args
-
 from tilenca.base import paths
 from tilenca.evaluation.suites import Aims, Suite, make_suite
-from tilenca.shapes import variants
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN
 from tilenca.shapes.stretch import Rows, smallest
-from tilenca.shapes.variants import Part
+from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, split_of
 from tilenca.training.recipes import RECIPES, aims_of
-
-PARTS: tuple[Part, ...] = get_args(Part)
 
 
 def test_the_exam_asks_for_what_training_never_saw() -> None:
@@ -31,7 +26,7 @@ def test_the_exam_asks_for_what_training_never_saw() -> None:
     assert [case.steps for case in held_out] == [60, 100, 100, 100, 100, 200]
     assert len(suite.unknown) == 3
     for case in suite.unknown:
-        assert all(variants.part_of(shape.rows) == "final" for shape in case.drawings.shapes)
+        assert all(split_of(shape.rows) == LAST for shape in case.drawings.shapes)
     assert [case.name for case in suite.larger] == ["7x6", "12x10"]
     assert make_suite(task, sizes, task.labels, Aims(), seed=1).unknown == (), (
         "a model that knows no dash is not asked"
@@ -65,9 +60,7 @@ def forms(suite: Suite) -> set[Rows]:
 def test_measurements_during_training_and_of_the_final_model_have_no_held_out_form_in_common() -> None:
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
     labels, aims = (*task.labels, UNKNOWN), Aims(10.0, True, True)
-    selection, final = (
-        forms(make_suite(task, sizes, labels, aims, 1, part)) for part in (PARTS[1], PARTS[2])
-    )
+    selection, final = (forms(make_suite(task, sizes, labels, aims, 1, split)) for split in (CHOOSING, LAST))
     assert len(selection) > 300
     assert len(final) > 300
     assert selection.isdisjoint(final)
@@ -84,5 +77,5 @@ def test_a_tile_is_missing_at_every_size_once_in_new_pairs_and_once_in_others() 
     for old, new in zip(suite.damaged[::2], suite.damaged[1::2], strict=True):
         assert old.aimed
         assert new.aimed
-        assert all(variants.part_of(shape.rows) == "training" for shape in old.drawings.shapes)
-        assert all(variants.part_of(shape.rows) == "final" for shape in new.drawings.shapes)
+        assert all(split_of(shape.rows) == TRAINED for shape in old.drawings.shapes)
+        assert all(split_of(shape.rows) == LAST for shape in new.drawings.shapes)

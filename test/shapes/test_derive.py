@@ -1,7 +1,6 @@
 """Shapes derived from a task's shapes, for training and for test suites."""
 
 from collections.abc import Callable
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -10,11 +9,11 @@ from tilenca.shapes import variants
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows, smallest
-from tilenca.shapes.variants import Part
+from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, split_of
 
 ONE, SEVEN = Shape("1", ("#", "#", "#"), "1"), Shape("7", ("###", "..#", "..#"), "7")
 TASK = [ONE, SEVEN]
-PARTS: tuple[Part, ...] = get_args(Part)
+SPLITS = (TRAINED, CHOOSING, LAST)
 
 
 def strokes(seed: int = 1) -> Callable[[], Rows | None]:
@@ -36,24 +35,24 @@ def test_every_size_comes_rounded_up_and_rounded_down() -> None:
 def test_a_damaged_shape_keeps_its_label_and_looks_like_no_other() -> None:
     zero = Shape("0", ("###", "#.#", "###"), "0")
     known = known_of([zero, *TASK])
-    found = [shape for part in PARTS for shape in damaged([zero, SEVEN], known, " less one", part)]
+    found = [shape for split in SPLITS for shape in damaged([zero, SEVEN], known, " less one", split)]
     assert {(shape.label, shape.name) for shape in found} == {("0", "0 less one")}, "a short 7 is still a 7"
     assert len(found) == 8, "every tile of a ring can go"
 
 
-@pytest.mark.parametrize("part", PARTS)
-def test_drawings_of_no_class_are_for_one_use_and_never_known(part: Part) -> None:
+@pytest.mark.parametrize("split", SPLITS)
+def test_drawings_of_no_class_are_on_one_side_of_the_split_and_never_known(split: str) -> None:
     known = known_of(TASK)
-    found = draw_unknown(20, strokes(), known, part)
+    found = draw_unknown(20, strokes(), known, split)
     assert found
     assert len(set(found)) == len(found)
     for rows in found:
-        assert variants.part_of(rows) == part
+        assert split_of(rows) == split
         assert not known.is_known(rows)
 
 
 def test_doubtful_drawings_are_excluded_at_every_size() -> None:
     known = known_of(TASK)
-    first, *others = draw_unknown(1000, strokes(), known, "training")
-    without = draw_unknown(1000, strokes(), known, "training", {smallest(first)})
+    first, *others = draw_unknown(1000, strokes(), known, TRAINED)
+    without = draw_unknown(1000, strokes(), known, TRAINED, {smallest(first)})
     assert without == [rows for rows in others if smallest(rows) != smallest(first)]

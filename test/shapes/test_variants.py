@@ -8,7 +8,7 @@ from tilenca.base import paths
 from tilenca.shapes import variants
 from tilenca.shapes.cells import cells_of, connected
 from tilenca.shapes.file import load_task
-from tilenca.shapes.stretch import smallest, stretch
+from tilenca.shapes.stretch import stretch
 from tilenca.shapes.variants import Known
 
 SHAPES = load_task(paths.DEFAULT_SHAPES).shapes
@@ -81,23 +81,3 @@ def test_drawing_ends_where_there_are_no_more_drawings() -> None:
         1000, lambda: variants.some_segments(random, SEGMENTS), lambda rows: not KNOWN.is_known(rows)
     )
     assert len(found) == len(set(found)) == 43  # all there are
-
-
-def test_an_eighth_of_all_forms_is_for_each_kind_of_measurements_and_the_rest_for_training() -> None:
-    random = np.random.default_rng(2)
-    forms = {smallest(variants.grown(random, 9, 6, 6)) for _ in range(3000)}
-    parts = [variants.part_of(rows) for rows in forms]
-    assert 0.1 < np.mean([part == "final" for part in parts]) < 0.15
-    assert 0.1 < np.mean([part == "selection" for part in parts]) < 0.15
-    assert [variants.held_out(rows) for rows in forms] == [part != "training" for part in parts]
-
-
-def test_all_sizes_of_a_form_are_for_the_same_use() -> None:
-    random = np.random.default_rng(2)
-    for _ in range(200):
-        rows = variants.grown(random, 9, 4, 4)
-        part = variants.part_of(rows)
-        for size in ((len(rows) + 1, len(rows[0])), (len(rows) + 4, len(rows[0]) + 3), (12, 12)):
-            larger = stretch(rows, *size)
-            assert larger is not None
-            assert variants.part_of(larger) == part

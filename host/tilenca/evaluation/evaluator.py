@@ -57,7 +57,7 @@ class Evaluator:
     def short_rows(self) -> Iterator[Measurement]:
         """The measurements during training: the clocks only, and nothing that takes long."""
         yield from self.agreement({"clock": SCHEDULES["clock"]})
-        for part in (self.sizes, self.disturbed, self.unknown):
+        for part in (self.varied, self.sizes, self.disturbed, self.unknown):
             yield from part()
         yield from self.changes(one_by_one=False)
         yield from self.longevity()
@@ -65,6 +65,7 @@ class Evaluator:
     def rows(self) -> Iterator[Measurement]:
         """All measurements, in the order of the table."""
         yield from self.agreement()
+        yield from self.varied()
         yield from self.sizes()
         yield from self.disturbed()
         yield from self.unknown()
@@ -84,6 +85,12 @@ class Evaluator:
         for case in self.suite.larger:
             runs = self._run(case, CLOCK, case.steps)
             yield measure("sizes", case.name, runs, case.steps, target_of(case.kind))
+
+    def varied(self) -> Iterator[Measurement]:
+        """Drawings by another hand: variants of held-out forms."""
+        if (case := self.suite.varied) is not None:
+            runs = self._run(case, CLOCK, case.steps, each=max(2, self.runs // 50))
+            yield measure("varied", case.name, runs, case.steps, target_of(case.kind))
 
     def sizes(self) -> Iterator[Measurement]:
         """Other sizes."""

@@ -30,6 +30,7 @@ TARGETS = {
     "drawn": Target(PERFECT, 0.998),
     "converged in 8": Target(0.5),
     "converged in 14": Target(0.95),
+    "varied": Target(0.92),
     "trained": Target(0.998, 0.9),
     "held out": Target(0.99),
     "very large": Target(0.95),

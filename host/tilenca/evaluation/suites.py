@@ -1,7 +1,7 @@
 """Test suites: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
 
 Training never sees the drawings of a case that is `held_out`: certain sizes, and unknown and damaged drawings
-whose form is held out (`variants.part_of`), whatever their size. The measurements during training and those
+whose form is held out (`variant.split_of`), whatever their size. The measurements during training and those
 of the final model have no such form in common.
 """
 
@@ -16,10 +16,12 @@ from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes, size_name
-from tilenca.shapes.variants import Part
+from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
+VARIANTS = {CHOOSING: 12, LAST: 40}  # of each class
+VARIANT_TRIES = 200  # for each of them
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
 DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
@@ -58,6 +60,7 @@ class Suite:
             drawing and a missing tile that training may use, and those that are held out from it.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
+        varied: variants of held-out forms; None: the classes are just their drawings.
     """
 
     drawn: tuple[Case, ...]
@@ -65,6 +68,7 @@ class Suite:
     damaged: tuple[Case, ...]
     unknown: tuple[Case, ...]
     larger: tuple[Case, ...]
+    varied: Case | None = None
 
 
 @dataclass(frozen=True)
@@ -83,7 +87,7 @@ class Aims:
 
 
 def make_suite(
-    task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, part: Part = "final"
+    task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
 ) -> Suite:
     """Makes the suite of a task.
 
@@ -92,8 +96,8 @@ def make_suite(
         sizes: of the task.
         labels: the model's.
         aims: of its training.
-        seed: of the unknown drawings.
-        part: of the held-out forms: those for "selection" during training, or the "final" ones.
+        seed: of the unknown drawings and of the variants.
+        split: which held-out forms to ask: those for `CHOOSING` a model, or those for the `LAST` measurement.
     """
     task = replace(task, labels=labels)
     first = task.group(0)
@@ -105,10 +109,31 @@ def make_suite(
     return Suite(
         drawn,
         tuple(_size_cases(task, first, sizes, aimed)),
-        tuple(_damaged_cases(task, first, aimed, aims, part)),
-        tuple(_unknown_cases(task, first, aims, seed, part)) if UNKNOWN in labels else (),
+        tuple(_damaged_cases(task, first, aimed, aims, split)),
+        tuple(_unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
+        _varied_case(task, seed, split),
     )
+
+
+def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
+    """Variants of forms that training never draws."""
+    if task.variants is None:
+        return None
+    random = np.random.default_rng(seed)
+    found: dict[tuple[str, ...], Shape] = {}
+    for label in task.variants.labels:
+        wanted = len(found) + VARIANTS[split]
+        for _ in range(VARIANT_TRIES * VARIANTS[split]):
+            if len(found) == wanted:
+                break
+            variant = task.variants.draw(label, split, random)
+            if variant is not None:
+                found.setdefault(
+                    variant.rows, Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
+                )
+    name = f"held-out forms, {size_name(task.variants.least)} to {size_name(task.variants.most)}"
+    return Case("varied", name, task.of(list(found.values())), LARGE_STEPS, held_out=True) if found else None
 
 
 def _steps(size: Size) -> int:
@@ -157,7 +182,7 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
 
 
 def _damaged_cases(
-    task: Drawings, first: Sequence[Shape], aimed: Sizes, aims: Aims, part: Part
+    task: Drawings, first: Sequence[Shape], aimed: Sizes, aims: Aims, split: str
 ) -> Iterable[Case]:
     """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
     for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
@@ -165,19 +190,15 @@ def _damaged_cases(
         steps = SHORT_STEPS if size is None else _steps(size)
         known = known_of([*task.shapes, *shapes])
         kind = "damaged" if steps <= SHORT_STEPS else "damaged, large"
-        uses: tuple[tuple[Part, str], ...] = (
-            ("training", "pairs that training may use"),
-            (part, "new pairs"),
-        )
-        for which, name in uses:
+        for which, name in ((TRAINED, "pairs that training may use"), (split, "new pairs")):
             if less := damaged(shapes, known, " less one", which):
                 label = f"{size_name(size or task.largest)}, one tile missing, {name}"
-                new = which == part
+                new = which == split
                 yield Case(kind, label, task.of(less), steps, held_out=new, aimed=aims.damaged)
 
 
 def _unknown_cases(
-    task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, part: Part
+    task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, split: str
 ) -> Iterable[Case]:
     random = np.random.default_rng(seed)
     known = known_of(task.shapes)
@@ -188,7 +209,7 @@ def _unknown_cases(
         ("halves of drawings", 100, variants.some_halves(drawings, random)),
         ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
     ):
-        if found := draw_unknown(wanted, draw, known, part):
+        if found := draw_unknown(wanted, draw, known, split):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
             label = f"no class: {name}, forms never trained on"
             yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)

@@ -3,9 +3,7 @@
 Everything here works on rows of `#` and `.`, trimmed to the tiles. numpy only.
 """
 
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Literal
 
 import numpy as np
 
@@ -15,8 +13,6 @@ from tilenca.shapes.stretch import Rows, smallest
 
 Cell = tuple[int, int]
 GIVE_UP = 300  # draws in a row without a new drawing
-PARTS = 8
-Part = Literal["training", "selection", "final"]
 
 
 def rows_of(cells: Iterable[Cell]) -> Rows:
@@ -123,21 +119,6 @@ def some_segments(random: np.random.Generator, strokes: Sequence[frozenset[Cell]
     share = random.uniform(0.2, 0.9)
     tiles = {cell for stroke in strokes if random.random() < share for cell in stroke}
     return rows_of(tiles) if tiles and connected(tiles) else None
-
-
-def part_of(rows: Rows) -> Part:
-    """What a drawing may be used for: all drawings of one form, whatever their size, are for the same.
-
-    Of all forms an eighth is for the measurements during training ("selection"), another eighth for those of
-    the final model ("final"), and the rest is for training.
-    """
-    number = zlib.crc32("/".join(smallest(rows)).encode()) % PARTS
-    return "final" if number == 0 else "selection" if number == 1 else "training"
-
-
-def held_out(rows: Rows) -> bool:
-    """Whether a drawing's form is kept from training, for measurements."""
-    return part_of(rows) != "training"
 
 
 def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Rows], bool]) -> list[Rows]:
