@@ -9,6 +9,7 @@ from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.cells import cells_of, connected
 from tilenca.shapes.form import make_form
 from tilenca.shapes.raster import holes
+from tilenca.shapes.skeleton import of_rows
 from tilenca.shapes.stretch import smallest
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, Variant, Variants
 
@@ -77,3 +78,16 @@ def test_a_task_may_have_one_drawing_only() -> None:
     assert alone.labels == ("7",)
     random = np.random.default_rng(1)
     assert any(alone.draw("7", TRAINED, random) for _ in range(20))
+
+
+def test_a_single_tile_has_no_variants() -> None:
+    random = np.random.default_rng(1)
+    single = Variants([("0", of_rows(("#",)))], VARIANTS.vary)
+    assert not any(single.draw("0", TRAINED, random) for _ in range(20))
+
+
+def test_a_line_never_becomes_a_block() -> None:
+    for variant in some(7, 200):
+        rows, cols = len(variant.rows), len(variant.rows[0])
+        if variant.label == "1" and all("." not in row for row in variant.rows):
+            assert rows >= 4 * cols

@@ -4,7 +4,7 @@ A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows,
 none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
 labels in order of first appearance. A table `[sizes]` lists other sizes at which the task's drawings keep
 their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawings of a class may differ
-(`tilenca.shapes.vary`).
+(`tilenca.shapes.vary`), and `orientations` whether they may be turned or mirrored (`tilenca.shapes.orient`).
 """
 
 import re
@@ -19,6 +19,12 @@ from tilenca.base.paths import DEFAULT_SHAPES
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
+from tilenca.shapes.orient import (
+    orientations,
+    orientations_of_skeleton,
+    read_orientations,
+    refuse_collisions,
+)
 from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
 from tilenca.shapes.skeleton import Skeleton
 from tilenca.shapes.stretch import stretch
@@ -123,15 +129,36 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     sizes = read_sizes(path, document.pop("sizes", {}))
     vary = read_vary(path, document.pop("vary", {}))
     forms = document.pop("forms", {})
+    kind = read_orientations(path, document.pop("orientations", None))
     if document:
         raise UsageError(
             f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables, "
-            "[sizes], [vary] and [forms]"
+            "[sizes], [vary], [forms] and orientations"
         )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
-    task = _task(path, tables, list(_table_lines(text)), max_classes)
-    return replace(task, sizes=sizes, vary=vary, forms=read_forms(path, forms, task.labels))
+    task = _in_all(_task(path, tables, list(_table_lines(text)), max_classes), kind)
+    skeletons = tuple(
+        (label, other)
+        for label, skeleton in read_forms(path, forms, task.labels)
+        for other in orientations_of_skeleton(skeleton, kind)
+    )
+    return replace(task, sizes=sizes, vary=vary, forms=skeletons)
+
+
+def _in_all(task: Task, kind: str | None) -> Task:
+    """The task with its drawings in all orientations."""
+    if kind is None:
+        return task
+    refuse_collisions(task.path, ((shape.label, shape.rows) for shape in task.shapes), kind)
+    shapes = {shape.rows: shape for shape in task.shapes}
+    count = Counter(shape.label for shape in task.shapes)
+    for shape in task.shapes:
+        for rows in orientations(shape.rows, kind):
+            if rows not in shapes:
+                count[shape.label] += 1
+                shapes[rows] = Shape(shape.label, rows, f"{shape.label}@{count[shape.label]}")
+    return replace(task, shapes=tuple(shapes.values()))
 
 
 def _task(

@@ -20,7 +20,8 @@ from tilenca.shapes.stretch import Rows, smallest
 from tilenca.shapes.vary import Vary
 
 KEY_SIZE = 11, 9  # the size at which forms are compared
-HOOK, FOOT = (0.12, 0.35), (0.1, 0.3)  # least and most length, as a share of the size
+HOOK, FOOT = (0.1, 0.28), (0.08, 0.22)  # least and most length, as a share of the size
+LINE = 4  # a form this much longer than wide is a line, and stays this much longer than it is thick
 SHORTEST = 0.4  # of a stroke's length must remain when its end is cut
 ROUNDS = 3  # of corner cutting make a corner round
 
@@ -44,7 +45,7 @@ class Form:
     flat: bool
 
     def draw(self, size: Size, pen: tuple[int, int] = (1, 1)) -> Rows | None:
-        """The drawing at a size; None where holes or gaps between strokes would close.
+        """The drawing at a size; None where holes or gaps would close, or a line become a block.
 
         Args:
             size: rows and columns of the bounding box; a line without width fills a column.
@@ -53,9 +54,14 @@ class Form:
         rows, cols = size
         if rows < pen[0] or cols < pen[1]:
             return None
+        if (self.aspect < 1 / LINE and rows < LINE * pen[1]) or (self.aspect > LINE and cols < LINE * pen[0]):
+            return None
         grid = raster.draw(self.strokes, self.fills, size, pen, self.flat)
-        legible = raster.holes(grid) == self.holes and raster.crossings(grid) >= self.crossings
-        return raster.rows_of_grid(grid) if legible else None
+        if raster.holes(grid) != self.holes or raster.crossings(grid) < self.crossings:
+            return None
+        if grid.all() and 1 / LINE <= self.aspect <= LINE and not self.fills:
+            return None
+        return raster.rows_of_grid(grid)
 
     @cached_property
     def crossings(self) -> int:

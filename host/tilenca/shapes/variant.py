@@ -57,7 +57,7 @@ class Variants:
         self.vary, self.least, self.most = vary, vary.least, vary.most
         self.labels = tuple(dict.fromkeys(label for label, _ in skeletons))
         self.skeletons = tuple(skeletons)
-        self._of = {label: [s for of, s in skeletons if of == label] for label in self.labels}
+        self._of = {label: [s for of, s in skeletons if of == label and s.edges] for label in self.labels}
         self._avoid = frozenset(avoid)
         shares = THINNER ** np.arange(vary.thickness[1] - vary.thickness[0] + 1)
         self._thickness = np.cumsum(shares / shares.sum())
@@ -72,9 +72,11 @@ class Variants:
             random: the only source of chance.
 
         Returns:
-            None where the form that came up is on another side, or fits no size.
+            None where the form that came up is on another side, or fits no size; a single tile has no forms.
         """
         skeletons = self._of[label]
+        if not skeletons:
+            return None
         form = make_form(skeletons[int(random.integers(len(skeletons)))], self.vary, random)
         if (form.key() % HELD_OUT == 0) == (split == TRAINED):
             return None

@@ -24,7 +24,7 @@ from tilenca.shapes.variants import rows_of
 from tilenca.shapes.vary import Vary
 
 VARIED, DAMAGED, OF_NO_CLASS, FREE = "varied", "damaged", "of no class", "unlabelled"
-CLOSE, FAR = 0.3, 0.97  # quantiles of the distances between drawings of one class and their nearest
+CLOSE, FAR = 0.15, 0.97  # quantiles of the distances between drawings of one class and their nearest
 ONE_TILE, DEAD = (
     0.5,
     (0.03, 0.16),

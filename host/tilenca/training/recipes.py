@@ -123,7 +123,7 @@ class Recipe:
 # tiles must not name a shape that is none of the task's.
 FULL = Recipe(
     hidden=DEFAULT_HIDDEN,
-    iterations=40_000,
+    iterations=100_000,
     batch=32,
     ticks=(14, 34),
     learning_rate=1e-3,
@@ -151,13 +151,13 @@ FULL = Recipe(
     max_stale=0.7,
     stretch=10.0,
     stretched=0.1,
-    varied=0.4,
-    damaged=0.13,
-    unknown=0.13,
-    unlabelled=0.07,
+    varied=0.38,
+    damaged=0.11,
+    unknown=0.18,
+    unlabelled=0.06,
     ramp=(0.05, 0.2),
     failure_weighting=0.6,
-    check_every=4_000,
+    check_every=10_000,
     validation_runs=500,
 )
 
