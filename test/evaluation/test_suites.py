@@ -74,6 +74,7 @@ def test_a_tile_is_missing_at_every_size_once_in_new_pairs_and_once_in_others() 
     ]
     assert [case.held_out for case in suite.damaged] == [False, True] * 5
     assert [case.steps for case in suite.damaged[::2]] == [60, 60, 100, 100, 100]
+    assert [case.kind for case in suite.damaged[::2]] == [*["damaged"] * 4, "damaged, large"]
     for old, new in zip(suite.damaged[::2], suite.damaged[1::2], strict=True):
         assert old.aimed
         assert new.aimed

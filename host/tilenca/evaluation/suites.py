@@ -25,6 +25,7 @@ VARIANT_TRIES = 200  # for each of them
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
 DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
+DAMAGED_LARGE = 100  # such a drawing has another target from this area on
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,8 @@ def _damaged_cases(
         shapes = first if size is None else at_size(first, size)
         steps = SHORT_STEPS if size is None else _steps(size)
         known = known_of([*task.shapes, *shapes])
-        kind = "damaged" if steps <= SHORT_STEPS else "damaged, large"
+        height, width = size or task.largest
+        kind = "damaged" if height * width < DAMAGED_LARGE else "damaged, large"
         for which, name in ((TRAINED, "pairs that training may use"), (split, "new pairs")):
             if less := damaged(shapes, known, " less one", which):
                 label = f"{size_name(size or task.largest)}, one tile missing, {name}"
