@@ -58,7 +58,9 @@ def test_states_go_through_integers_and_back_unharmed(pools: Pools) -> None:
     random = np.random.default_rng(3)
     random.uniform()  # the number of steps
     order = random.permutation(len(old.drawing))
-    simulator = Simulator(FastEngine(MODEL), pools.drawings, old.drawing[order], CLOCKS, random)
+    engine = FastEngine(MODEL)
+    seeds = engine.seed(int(pools.drawings.sizes[old.drawing].sum()))
+    simulator = Simulator(engine, pools.drawings, old.drawing[order], CLOCKS, random, seeds)
     simulator.run(40)
     batch = simulator.batch
     assert np.array_equal(old.states[order[batch.sample], batch.place] * 8192, simulator.states)

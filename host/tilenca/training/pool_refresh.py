@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from tilenca.model.file import Model
 from tilenca.protocol.constants import STATE_MAX
 from tilenca.shapes.batch import Drawings
+from tilenca.simulator.conditions import Conditions, Fault
 from tilenca.simulator.engine import SEED_STATE, FastEngine
-from tilenca.simulator.simulator import Conditions, Fault, Simulator
+from tilenca.simulator.simulator import Simulator
 from tilenca.simulator.transitions import moved
 from tilenca.training.pool import Pool, Pools, States
 
