@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows, smallest
@@ -17,7 +17,7 @@ SPLITS = (TRAINED, CHOOSING, LAST)
 
 
 def strokes(seed: int = 1) -> Callable[[], Rows | None]:
-    return variants.some_strokes([("###", "#.#", "###", "#.#", "###")], np.random.default_rng(seed))
+    return edits.some_strokes([("###", "#.#", "###", "#.#", "###")], np.random.default_rng(seed))
 
 
 def test_shapes_at_another_size_leave_out_those_that_cannot_be_drawn_that_small() -> None:

@@ -10,9 +10,9 @@ from functools import lru_cache
 from itertools import product
 
 from tilenca.base.sides import OFFSETS
+from tilenca.shapes.edits import Cell, rows_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows
-from tilenca.shapes.variants import Cell, rows_of
 
 MOST_TRIES = 200_000  # of answers to a group of pieces; larger groups are improved piece by piece
 

@@ -11,7 +11,7 @@ from itertools import chain
 
 import numpy as np
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
@@ -207,9 +207,9 @@ def _unknown_cases(
     drawings = [shape.rows for shape in first]
 
     for name, wanted, draw in (
-        ("random drawings", 500, variants.some_grown(drawings, random, least=4)),
-        ("halves of drawings", 100, variants.some_halves(drawings, random)),
-        ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
+        ("random drawings", 500, edits.some_grown(drawings, random, least=4)),
+        ("halves of drawings", 100, edits.some_halves(drawings, random)),
+        ("other choices of the same strokes", 100, edits.some_strokes(drawings, random)),
     ):
         if found := draw_unknown(wanted, draw, known, split):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]

@@ -5,12 +5,12 @@ Training and test suites derive them alike; `variant.split_of` keeps their forms
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
+from tilenca.shapes.edits import Known
 from tilenca.shapes.file import Shape
 from tilenca.shapes.sizes import Size
 from tilenca.shapes.stretch import Rows, smallest
 from tilenca.shapes.variant import split_of
-from tilenca.shapes.variants import Known
 
 
 def known_of(shapes: Iterable[Shape]) -> Known:
@@ -64,7 +64,7 @@ def draw_unknown(
 
     Args:
         wanted: how many.
-        draw: the source of drawings, see `variants.Drawer`.
+        draw: the source of drawings, see `edits.Drawer`.
         known: the index of the task's shapes, which are excluded with all that look like them.
         split: draw only those on this side of the split (`variant.split_of`).
         doubtful: the smallest forms of other drawings to exclude, at every size.
@@ -73,4 +73,4 @@ def draw_unknown(
     def fits(rows: Rows) -> bool:
         return split_of(rows) == split and not known.is_known(rows) and smallest(rows) not in doubtful
 
-    return variants.draw_until(wanted, draw, fits)
+    return edits.draw_until(wanted, draw, fits)

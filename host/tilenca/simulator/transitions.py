@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.cells import removable
+from tilenca.shapes.edits import Cell, rows_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows
-from tilenca.shapes.variants import Cell, rows_of
 from tilenca.simulator.conditions import Conditions, Rebuilding
 from tilenca.simulator.engine import Engine, States
 from tilenca.simulator.simulator import Simulator, Trajectory

@@ -9,10 +9,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
 from tilenca.shapes.batch import UNLABELLED, Drawings
 from tilenca.shapes.cells import connected, removable
 from tilenca.shapes.derive import known_of
+from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.form import make_form
 from tilenca.shapes.lattice import random_skeleton
@@ -20,7 +21,6 @@ from tilenca.shapes.likeness import Likeness
 from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import TRAINED, Variants, split_of
-from tilenca.shapes.variants import rows_of
 from tilenca.shapes.vary import Vary
 
 VARIED, DAMAGED, OF_NO_CLASS, FREE = "varied", "damaged", "of no class", "unlabelled"
@@ -175,7 +175,7 @@ class Generator:
         if chance < 0.4:
             least = min(4, height * width)
             tiles = int(random.integers(least, max(least, round(0.6 * height * width)) + 1))
-            return variants.grown(random, tiles, height, width), False
+            return edits.grown(random, tiles, height, width), False
         if chance < 0.75:
             form = make_form(random_skeleton(random), self._vary, random)
             pen = 1 + int(random.random() < 0.3 and self._vary.thickness[1] > 1)
@@ -184,8 +184,8 @@ class Generator:
         if shape is None:
             return None, True
         if chance < 0.9:
-            return variants.half(random, shape.rows), True
-        return variants.edited(random, shape.rows, int(random.integers(4, 5 + len(shape.cells) // 4))), True
+            return edits.half(random, shape.rows), True
+        return edits.edited(random, shape.rows, int(random.integers(4, 5 + len(shape.cells) // 4))), True
 
     def _size(self, random: np.random.Generator) -> Size:
         if self._sizes:
