@@ -131,6 +131,8 @@ def test_a_model_is_simulated_and_measured(plain: EmptyEnvironment, tmp_path: Pa
     done = plain.run(tmp_path, "tilenca", "simulate", "--shape", "4", "--runs", "3", "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.splitlines()[0])
+    by_name = ["simulate", "--model", "hex", "--shapes", "hex", "--shape", "A", "--runs", "3", "--json"]
+    assert Path(document(plain.run(tmp_path, "tilenca", *by_name))["file"]).is_relative_to(plain.venv)
     report = document(plain.run(tmp_path, "tilenca", "evaluate", "--runs", "3", "--json"))
     assert report["cells_right"] > 0.9
     (tmp_path / "one.toml").write_text(TWO_TILES, encoding="utf-8")
