@@ -36,7 +36,7 @@ setup-demo setup-train setup-test setup-check setup-docs:
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
 	@$(PIO) run -e $(ENV)
 	@$(TILENCA) emulate --shape all
-	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch"
+	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch --seconds 10"
 
 test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
