@@ -31,7 +31,7 @@ setup: setup-demo ## make this clone ready: system packages, .venv, C++ librarie
 
 setup-train: ## the same, with PyTorch for training
 setup-demo setup-train setup-test setup-check setup-docs:
-	@sh tools/setup/setup.sh $(@:setup-%=%)
+	@sh tools/setup/setup.sh $(@:setup-%=%) $(if $(filter setup%,$(MAKECMDGOALS)),--next)
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
 	@$(PIO) run -e $(ENV)
