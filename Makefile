@@ -18,6 +18,9 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \
 # A core directory of the user's own would hide the one of the set-up.
 unexport PLATFORMIO_CORE_DIR
 
+# Where this is set, every process of the many that tests start would compile the package again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \

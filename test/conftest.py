@@ -1,6 +1,8 @@
 """What all tests share."""
 
+import atexit
 import os
+import shutil
 import signal
 import tempfile
 from pathlib import Path
@@ -10,6 +12,7 @@ from hypothesis import HealthCheck, settings
 
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
+from support.order import rank
 from support.terminal import pty
 
 __all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
@@ -37,10 +40,23 @@ def pytest_configure() -> None:
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
 
+    _share_objects()
+
+
+def _share_objects() -> None:
+    """Lets builds of the firmware in many folders share their objects, for as long as these tests run.
+
+    SCons goes by the content of the sources and by the whole command, so a build is what it would be without.
+    """
+    if "PYTEST_XDIST_WORKER" not in os.environ:  # its processes inherit it
+        folder = tempfile.mkdtemp(prefix="tilenca-objects-")
+        os.environ["PLATFORMIO_BUILD_CACHE_DIR"] = folder
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Puts the longest tests first: at the end, one would keep one processor busy and the others idle."""
-    items.sort(key=lambda item: item.get_closest_marker("soak") is None)
+    """Puts files with long tests first; all others keep their order."""
+    items.sort(key=lambda item: rank(item.path))
 
 
 @pytest.fixture(scope="session")
