@@ -1,8 +1,6 @@
 """What all tests share."""
 
-import atexit
 import os
-import shutil
 import signal
 import tempfile
 from pathlib import Path
@@ -10,6 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from support import objects
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
 from support.order import rank
@@ -39,19 +38,7 @@ def pytest_configure() -> None:
         os.environ.pop(name, None)
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
-
-    _share_objects()
-
-
-def _share_objects() -> None:
-    """Lets builds of the firmware in many folders share their objects, for as long as these tests run.
-
-    SCons goes by the content of the sources and by the whole command, so a build is what it would be without.
-    """
-    if "PYTEST_XDIST_WORKER" not in os.environ:  # its processes inherit it
-        folder = tempfile.mkdtemp(prefix="tilenca-objects-")
-        os.environ["PLATFORMIO_BUILD_CACHE_DIR"] = folder
-        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    objects.share()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -19,6 +19,7 @@ from packaging.requirements import Requirement
 
 from release.wheel import make
 from setup import native
+from support import objects
 from support.empty_environment import EmptyEnvironment
 from tilenca import __version__
 from tilenca.base import paths
@@ -225,9 +226,10 @@ def test_with_its_extra_it_plots(training: EmptyEnvironment, tmp_path: Path) -> 
 
 def pio_environment() -> dict[str, str]:
     """PlatformIO comes from the tests' environment, and so do its packages."""
+    environment = os.environ | objects.environment()
     if (paths.ROOT / "platformio.local.ini").exists():
-        return {**os.environ, "PLATFORMIO_CORE_DIR": str(paths.BUILD / "platformio")}
-    return dict(os.environ)
+        environment["PLATFORMIO_CORE_DIR"] = str(paths.BUILD / "platformio")
+    return environment
 
 
 @pytest.mark.skipif(not PIO.exists(), reason="PlatformIO is not installed; run `make setup`")
