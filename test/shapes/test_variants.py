@@ -81,9 +81,3 @@ def test_drawing_ends_where_there_are_no_more_drawings() -> None:
         1000, lambda: variants.some_segments(random, SEGMENTS), lambda rows: not KNOWN.is_known(rows)
     )
     assert len(found) == len(set(found)) == 43  # all there are
-
-
-def test_a_quarter_of_the_unknown_drawings_is_held_out_wherever_they_are_drawn() -> None:
-    random = np.random.default_rng(2)
-    drawings = [variants.grown(random, 9, 6, 6) for _ in range(2000)]
-    assert 0.2 < np.mean([variants.held_out(rows) for rows in drawings]) < 0.3
