@@ -62,6 +62,9 @@ def test_the_makefiles_depfiles_are_read_as_well_where_the_clone_lies_in_a_folde
     (build / "a.cpp.o.d").write_text(
         f"a.cpp.o: {escaped}/tools/a.cpp \\\n /usr/include/stdio.h {escaped}/build/b.h\n"
     )
+    (build / "gone.cpp.o.d").write_text(f"gone.cpp.o: {escaped}/tools/gone.cpp")
+    (root / "tools").mkdir()
+    (root / "tools" / "a.cpp").touch()
     monkeypatch.setattr(wheel, "ROOT", root)
     assert read_by_compiler(build) == {"tools/a.cpp", "tools/c_api/exports.map"}
 

@@ -102,7 +102,8 @@ def read_by_compiler(build: Path = native.BUILD) -> set[str]:
     else:  # the depfiles of a Makefile
         told = "".join(path.read_text(encoding="utf-8") for path in build.rglob("*.o.d")).replace("\\ ", " ")
     read = {Path(word) for word in re.findall(rf"{re.escape(str(ROOT))}/(\S+)", told)}
-    read = {path for path in read if path.parts[0] != "build"}
+    # What was read for a source that is gone by now is told as well.
+    read = {path for path in read if path.parts[0] != "build" and (ROOT / path).exists()}
     if not any(path.suffix == ".cpp" for path in read):
         raise WheelError(f"{build}: does not tell what it was compiled from; remove it and run `make setup`")
     return {str(path) for path in read} | {EXPORTS}
