@@ -7,6 +7,7 @@ from typing import Any, NoReturn, get_args
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.shipped import model_folder, model_names, shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
 from tilenca.shapes.sizes import Size, parse_size
@@ -89,11 +90,23 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """The `--model` option of all commands that read a trained model."""
     parser.add_argument(
         "--model",
-        type=Path,
+        type=model_folder,
         default=paths.DEFAULT_MODEL,
         metavar="DIR",
-        help="the model's directory (models/digits)",
+        help=f"the model's directory, or one of: {' '.join(model_names())} (digits)",
     )
+
+
+def add_shapes_argument(add: Callable[..., Any], what: str, **more: Any) -> None:
+    """The `--shapes` option of all commands that read shape files.
+
+    Args:
+        add: `add_argument` of a parser or a group.
+        what: the rest of the help text, before the names of the files that come with tilenca.
+        more: further arguments of `add`.
+    """
+    names = " ".join(shapes_names())
+    add("--shapes", type=shapes_file, metavar="F", help=f"{what}, or one of: {names} (digits)", **more)
 
 
 def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
