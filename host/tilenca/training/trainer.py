@@ -18,7 +18,6 @@ from tilenca.base.errors import TilencaError
 from tilenca.model.file import Dimensions, Model
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
-from tilenca.training.adam import Adam
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.curriculum import Curriculum
 from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
@@ -110,7 +109,7 @@ class Trainer:
         ).to(device)
         # The EMA becomes the model: a mean of the last thousand or so weights, far steadier than each.
         self.ema = {name: value.detach().clone() for name, value in self.net.named_parameters()}
-        self.optimizer = Adam(self.net.parameters(), config.recipe.learning_rate)
+        self.optimizer = torch.optim.Adam(self.net.parameters(), lr=config.recipe.learning_rate)
         self.pools = Pools(config.recipe, curriculum, config.dimensions.channels, self.random)
         self.iteration = 0
         self.ended = False  # before the last iteration, since all targets held
@@ -183,7 +182,8 @@ class Trainer:
             )
         if recipe.cosine:
             fall = 0.5 * (1 - math.cos(math.pi * self.iteration / recipe.iterations))
-            self.optimizer.rate = recipe.learning_rate * (1 - recipe.cosine * fall)
+            for group in self.optimizer.param_groups:
+                group["lr"] = recipe.learning_rate * (1 - recipe.cosine * fall)
         self.optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
         if recipe.clip_norm > 0:
@@ -245,7 +245,7 @@ class Trainer:
             "net": self.net.state_dict(),
             "ema": self.ema,
             "best": self._best,
-            "optimizer": self.optimizer.state(),
+            "optimizer": self.optimizer.state_dict(),
             "pools": self.pools.state(),
             "history": self.history,
             "since": self._since,
@@ -257,7 +257,7 @@ class Trainer:
         """Continues where a checkpoint was written, see `read_checkpoint`."""
         state = read_checkpoint(path, self.config.as_json(), self.device)
         self.net.load_state_dict(state["net"])
-        self.optimizer.restore(state["optimizer"])
+        self.optimizer.load_state_dict(state["optimizer"])
         self.pools.restore(state["pools"])
         self.random.bit_generator.state = state["random"]
         self.history, self._since, self.checks = (
