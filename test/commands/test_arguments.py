@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -13,6 +13,7 @@ from tilenca import cli
 from tilenca.base import paths
 from tilenca.commands import arguments
 from tilenca.commands.arguments import Parser, add_fleet_arguments
+from tilenca.simulator.conditions import ScheduleKind
 
 
 @pytest.mark.parametrize(
@@ -106,3 +107,7 @@ def test_what_comes_with_tilenca_has_a_short_name_in_every_command_from_any_fold
             r"one\s+of:\s+digits\s.*\bhex\b.*\bpentominoes\b", parser.format_help(), re.DOTALL
         ), command
     assert {"evaluate", "plot", "simulate"} <= set(takers)
+
+
+def test_every_schedule_of_the_simulator_can_be_asked_for() -> None:
+    assert sorted(arguments.SCHEDULES) == sorted(get_args(ScheduleKind))

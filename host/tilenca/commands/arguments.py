@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn, get_args
+from typing import Any, NoReturn
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -11,9 +11,9 @@ from tilenca.base.shipped import model_folder, model_names, shapes_file, shapes_
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
 from tilenca.shapes.sizes import Size, parse_size
-from tilenca.simulator.conditions import ScheduleKind
 
 MAX_COUNT = 1_000_000
+SCHEDULES = ("clock", "random", "listing")  # simulator/conditions.py has them, with numpy
 
 
 class Parser(argparse.ArgumentParser):
@@ -114,7 +114,7 @@ def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--schedule",
-        choices=get_args(ScheduleKind),
+        choices=SCHEDULES,
         default="clock",
         help="clock: the tiles' own clocks; listing: the paper's, one tile after another; random: two random "
         "halves a step (clock)",
