@@ -150,9 +150,8 @@ def test_as_many_classes_as_a_wide_state_has_room_for(tmp_path: Path) -> None:
     labels = "0123456789AbCcdEFGHhIJKLMnoPqrtUuVWXY_="
     rows = [format(number + 64, "b").replace("0", ".").replace("1", "#") for number in range(64)]
     file = tmp_path / "many.toml"
-    file.write_text(
-        "".join(drawing(label, row, "#" * len(row)) for label, row in zip(labels, rows, strict=False))
-    )
+    drawings = (drawing(label, row, "#" * len(row)) for label, row in zip(labels, rows, strict=False))
+    file.write_text("vary = false\n" + "".join(drawings))
     assert train(file, tmp_path / "out", "--iterations", "4", "--state", "51") == 0
     assert len(load_model(tmp_path / "out").labels) == len(labels) + 1
 

@@ -20,8 +20,8 @@ from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
-VARIANTS = {CHOOSING: 12, LAST: 40}  # of each class
-VARIANT_TRIES = 200  # for each of them
+VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
+VARIANT_TRIES = 300  # in a row without a new one
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
 DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
@@ -124,15 +124,13 @@ def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
     random = np.random.default_rng(seed)
     found: dict[tuple[str, ...], Shape] = {}
     for label in task.variants.labels:
-        wanted = len(found) + VARIANTS[split]
-        for _ in range(VARIANT_TRIES * VARIANTS[split]):
-            if len(found) == wanted:
-                break
+        wanted, idle = len(found) + VARIANTS[split], 0
+        while len(found) < wanted and idle < VARIANT_TRIES:
             variant = task.variants.draw(label, split, random)
-            if variant is not None:
-                found.setdefault(
-                    variant.rows, Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
-                )
+            idle += 1
+            if variant is not None and variant.rows not in found:
+                found[variant.rows] = Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
+                idle = 0
     name = f"held-out forms, {size_name(task.variants.least)} to {size_name(task.variants.most)}"
     return Case("varied", name, task.of(list(found.values())), LARGE_STEPS, held_out=True) if found else None
 

@@ -21,6 +21,7 @@ from tilenca.simulator.conditions import Conditions, Rebuilding
 from tilenca.simulator.engine import Engine, States
 from tilenca.simulator.simulator import Simulator, Trajectory
 
+MOST_CHANGES = 2000  # runs of one row; the pairs of thousands of drawings are millions
 PLACES_TRIED = 100
 Order = Literal["at once", "adding first", "mixed", "removing first"]
 Step = list[tuple[Cell, bool]]  # tiles put down (true) or taken away at the same time
@@ -79,7 +80,7 @@ def rebuild(
     Returns:
         The runs; None where there is only one class.
     """
-    pairs = list(_pairs(drawings)) * runs
+    pairs = _pairs(drawings, runs, random)
     if not pairs:
         return None
     sites = [_Site.plan(drawings, old, new, way.order, random) for old, new in pairs]
@@ -141,12 +142,15 @@ def _timetable(sites: Sequence[_Site], last: int, between: int) -> Rebuilding:
     return Rebuilding(np.array(present, np.bool_), np.array(sorted(switches), np.int32).reshape(-1, 3))
 
 
-def _pairs(drawings: Drawings) -> Iterator[tuple[int, int]]:
-    classes = drawings.classes
-    for old in range(len(drawings)):
-        for new in range(len(drawings)):
-            if classes[old] != classes[new]:
-                yield old, new
+def _pairs(drawings: Drawings, runs: int, random: np.random.Generator) -> list[tuple[int, int]]:
+    """Every drawing with every one of another class, `runs` times, or `MOST_CHANGES` pairs by chance."""
+    classes, every = drawings.classes, range(len(drawings))
+    if len(drawings) ** 2 <= MOST_CHANGES:
+        pairs = [(old, new) for old in every for new in every if classes[old] != classes[new]] * runs
+        some = sorted(random.permutation(len(pairs))[:MOST_CHANGES]) if len(pairs) > MOST_CHANGES else None
+        return pairs if some is None else [pairs[number] for number in some]
+    drawn = random.integers(len(drawings), size=(2 * MOST_CHANGES, 2))
+    return [(int(old), int(new)) for old, new in drawn if classes[old] != classes[new]][:MOST_CHANGES]
 
 
 def moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]]) -> States:
