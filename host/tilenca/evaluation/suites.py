@@ -15,12 +15,14 @@ from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
+from tilenca.shapes.likeness import index_of
 from tilenca.shapes.sizes import Size, Sizes, size_name
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
 VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
+INDEXED = 600  # variants that drawings of no class are compared with
 VARIANT_TRIES = 300  # in a row without a new one
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
@@ -200,17 +202,25 @@ def _damaged_cases(
 def _unknown_cases(
     task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, split: str
 ) -> Iterable[Case]:
+    """Drawings of no class: neither known nor, where classes vary, so much like one that they could be it."""
     random = np.random.default_rng(seed)
     known = known_of(task.shapes)
     drawings = [shape.rows for shape in first]
-
-    for name, wanted, draw in (
-        ("random drawings", 500, edits.some_grown(drawings, random, least=4)),
-        ("halves of drawings", 100, edits.some_halves(drawings, random)),
-        ("other choices of the same strokes", 100, edits.some_strokes(drawings, random)),
+    likeness = None
+    if task.variants is not None:
+        likeness, _ = index_of([shape.rows for shape in task.shapes], task.variants, INDEXED, random)
+    for name, wanted, draw, of_strokes in (
+        ("random drawings", 500, edits.some_grown(drawings, random, least=4), False),
+        ("halves of drawings", 100, edits.some_halves(drawings, random), True),
+        ("other choices of the same strokes", 100, edits.some_strokes(drawings, random), True),
     ):
-        if found := draw_unknown(wanted, draw, known, split):
-            shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
+        found = draw_unknown(wanted, draw, known, split)
+        shapes = [
+            Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}")
+            for rows in found
+            if likeness is None or not likeness.could_be_one(rows, of_strokes)
+        ]
+        if shapes:
             label = f"no class: {name}, forms never trained on"
             yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
 

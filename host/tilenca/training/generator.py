@@ -17,14 +17,13 @@ from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.form import make_form
 from tilenca.shapes.lattice import random_skeleton
-from tilenca.shapes.likeness import Likeness
+from tilenca.shapes.likeness import index_of
 from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import TRAINED, Variants, split_of
 from tilenca.shapes.vary import Vary
 
 VARIED, DAMAGED, OF_NO_CLASS, FREE = "varied", "damaged", "of no class", "unlabelled"
-CLOSE, FAR = 0.15, 0.97  # quantiles of the distances between drawings of one class and their nearest
 ONE_TILE, DEAD = (
     0.5,
     (0.03, 0.16),
@@ -33,7 +32,6 @@ TORN = 0.3  # share of damaged drawings that may be torn apart
 CLEAR = 30  # tiles of a drawing in which one tile too many leaves no doubt
 MOST_EDITS = 3
 MOST_TILES = 255  # of a drawing, as many as tiles can have different ids
-INDEXED = 2000  # drawings of the files that drawings of no class are compared with
 FEW = 200  # drawings of a task that are compared with each other, tile by tile
 TRIES = 50
 
@@ -69,14 +67,10 @@ class Generator:
         self._known = known_of(task.shapes) if len(task.shapes) <= FEW else None
         self._labels = [label for label in task.labels if label != UNKNOWN]
         self._taken: dict[Rows, str] = {shape.rows: shape.label for shape in whole}
-        drawn = [shape for shape in (self._varied(random) for _ in range(2 * indexed)) if shape is not None]
-        some = random.permutation(len(self._whole))[:INDEXED]
-        index = [shape.rows for shape in (*(self._whole[number] for number in sorted(some)), *drawn)]
-        for shape in drawn:  # what came up for two classes belongs to neither
-            if self._taken.setdefault(shape.rows, shape.label) != shape.label:
-                self._taken[shape.rows] = UNLABELLED
-        self._likeness = Likeness(index)
-        self._close, self._far = _quantiles(index, random)
+        self._likeness, drawn = index_of([shape.rows for shape in whole], self._variants, indexed, random)
+        for variant in drawn:  # what came up for two classes belongs to neither
+            if self._taken.setdefault(variant.rows, variant.label) != variant.label:
+                self._taken[variant.rows] = UNLABELLED
         self._sizes: list[Size] = extents if self._variants is None else []
         tallest = max(rows * cols for rows, cols in (*extents, self._vary.most or largest))
         self.most_tiles = min(tallest, MOST_TILES) + 2 * MOST_EDITS
@@ -144,9 +138,9 @@ class Generator:
         rows, like_strokes = self._stranger(random)
         if rows is None or split_of(rows) != TRAINED or rows in self._taken:
             return None
-        _, distance = self._likeness.nearest(rows)
-        far_enough = distance > (self._far if like_strokes else self._close)
-        return Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}") if far_enough else None
+        if self._likeness.could_be_one(rows, like_strokes):
+            return None
+        return Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")
 
     def _free(self, random: np.random.Generator) -> Shape | None:
         """A drawing whose class is in doubt."""
@@ -210,15 +204,3 @@ def _edited(shape: Shape, edits: int, random: np.random.Generator) -> Rows | Non
             down, right = ((0, 1), (1, 0), (0, -1), (-1, 0))[int(random.integers(4))]
             tiles.add((row + down, col + right))
     return rows_of(tiles) if connected(tiles) and tiles != set(shape.cells) else None
-
-
-def _quantiles(index: Sequence[Rows], random: np.random.Generator) -> tuple[float, float]:
-    """Distances below which a drawing is close to, or not clearly far from, one of the index."""
-    halves = random.permutation(len(index))
-    asked, known = halves[: len(index) // 5], halves[len(index) // 5 :]
-    if len(asked) < 10:
-        return 1.0, 2.0
-    likeness = Likeness([index[number] for number in known])
-    nearest = [likeness.nearest(index[number])[1] for number in asked]
-    close, far = np.quantile(nearest, (CLOSE, FAR))
-    return float(close), float(far)
