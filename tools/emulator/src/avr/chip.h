@@ -29,7 +29,7 @@ struct MarkPassed {
     uint64_t cycle;
 };
 
-class Chip : private Bus {
+class Chip final : private Bus {
   public:
     Chip(std::shared_ptr<Program> program, const Fuses& fuses);
     ~Chip() override;

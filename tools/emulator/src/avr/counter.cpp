@@ -26,6 +26,7 @@ uint64_t Counter::period() const {
 
 void Counter::set_mode(const WaveMode& mode) {
     mode_ = mode;
+    free_ticks_ = 0;
     if (!is_pwm()) {
         load_buffers();
     }
@@ -34,6 +35,7 @@ void Counter::set_mode(const WaveMode& mode) {
 
 void Counter::set_count(uint16_t count) {
     count_ = count;
+    free_ticks_ = 0;
     blocked_ = true;
 }
 
@@ -41,6 +43,7 @@ void Counter::set_compare(unsigned channel, uint16_t value) {
     buffers_[channel] = value;
     if (!is_pwm()) {
         compares_[channel] = value;
+        free_ticks_ = 0;
     }
 }
 
@@ -68,7 +71,7 @@ bool Counter::is_settled() const {
     return count_ <= top() && (!is_pwm() || compares_ == buffers_);
 }
 
-void Counter::advance(uint64_t ticks) {
+void Counter::advance_far(uint64_t ticks) {
     while (ticks != 0 && !is_settled()) {
         ticks -= step(ticks);
     }
@@ -81,6 +84,7 @@ void Counter::advance(uint64_t ticks) {
     while (ticks != 0) {
         ticks -= step(ticks);
     }
+    free_ticks_ = static_cast<uint32_t>(ticks_to_boundary());
 }
 
 // Runs to the next value at which anything can happen and leaves it, or as far as `ticks` go; returns the
@@ -244,6 +248,7 @@ void Counter::capture_now() {
 void Counter::state(Archive& archive) {
     archive(mode_.wave, mode_.top, mode_.fixed_top, count_, capture_, down_, blocked_, compares_, buffers_,
             actions_, levels_, flags);
+    free_ticks_ = 0;
 }
 
 } // namespace tilenca::avr

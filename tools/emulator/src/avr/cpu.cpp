@@ -34,10 +34,7 @@ uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, ui
         return cpu->data[address];
     }
     if (address == kStatus) {
-        cpu->carry = carry;
-        cpu->zero = zero;
-        cpu->nvh = nvh;
-        return cpu->status();
+        return cpu->status(carry, zero, nvh);
     }
     if (address >= kDataBytes) {
         cpu->bus->address_outside_memory(address, false);
@@ -53,13 +50,7 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
     cpu->zero = zero;
     cpu->nvh = nvh;
     if (address == kStatus) {
-        if ((value & 0x80) != 0 && !cpu->interrupts_on) {
-            cpu->held_until = cycle + 1;
-            if (cpu->requests != 0) {
-                cpu->end_soon();
-            }
-        }
-        cpu->set_status(value);
+        write_status(cpu, value, cycle);
     } else if (address >= kDataBytes) {
         cpu->bus->address_outside_memory(address, true);
     } else if (address >= kIoStart && address < kSramStart &&
@@ -91,35 +82,6 @@ void Cpu::reset(uint32_t start_word) {
     ops::set_pair(this, ops::kStackPointer, kDataBytes - 1);
     set_stack_low(std::max<uint16_t>(kDataBytes - 1, stack_floor));
     end_soon();
-}
-
-uint8_t Cpu::status() const {
-    const bool negative = ops::is_negative(nvh), overflow = ops::is_overflow(nvh);
-    return static_cast<uint8_t>(carry | (zero == 0) << 1 | negative << 2 | overflow << 3 |
-                                ops::is_signed_less(nvh) << 4 | ops::is_half(nvh) << 5 | transfer << 6 |
-                                interrupts_on << 7);
-}
-
-void Cpu::set_status(uint8_t value) {
-    carry = value & 1;
-    zero = (value & 2) == 0;
-    const bool sign_differs = ((value >> 4 ^ value >> 3 ^ value >> 2) & 1) != 0;
-    nvh = ops::pack((value & 4u) << 5, (value & 8u) << 4, (value & 0x20u) >> 1) | uint32_t{sign_differs}
-                                                                                      << 31;
-    transfer = (value & 0x40) != 0;
-    interrupts_on = (value & 0x80) != 0;
-}
-
-void Cpu::request(uint8_t vector, bool active) {
-    const uint64_t bit = uint64_t{1} << vector;
-    if (!active) {
-        requests &= ~bit;
-    } else if ((requests & bit) == 0) {
-        requests |= bit;
-        if (interrupts_on) {
-            end_soon();
-        }
-    }
 }
 
 void Cpu::take_interrupt() {

@@ -94,11 +94,22 @@ struct Cpu {
     void step();
     // Goes on from a breakpoint: the instruction there is executed, and no other.
     void leave_breakpoint();
-    uint8_t status() const;
+    uint8_t status() const { return status(carry, zero, nvh); }
+    uint8_t status(uint32_t with_carry, uint32_t with_zero, uint32_t with_nvh) const;
     void set_status(uint8_t value);
     uint32_t pc() const { return static_cast<uint32_t>(at - program); }
     // Raises or withdraws a request; noticed before the next instruction.
-    void request(uint8_t vector, bool active);
+    void request(uint8_t vector, bool active) {
+        request_all(uint64_t{1} << vector, uint64_t{active} << vector);
+    }
+    // The same for all vectors of a mask: those in `asking` ask, the others of the mask do not.
+    void request_all(uint64_t mask, uint64_t asking) {
+        const uint64_t fresh = asking & ~requests;
+        requests = (requests & ~mask) | asking;
+        if (fresh != 0 && interrupts_on) {
+            end_soon();
+        }
+    }
     void end_soon() { limit = 0; }
     void fail(const std::string& reason) {
         fault = reason;

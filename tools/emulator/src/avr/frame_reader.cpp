@@ -1,7 +1,5 @@
 #include "avr/frame_reader.h"
 
-#include <cmath>
-
 namespace tilenca::avr {
 
 namespace {
@@ -11,7 +9,7 @@ bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
     int high = 0;
     for (int back = 2; back >= 0; back--) {
         const double when = sampling.decided(bit) - back * sampling.period;
-        high += line.at(static_cast<uint64_t>(std::floor(when)));
+        high += line.at(static_cast<uint64_t>(when));
     }
     return high >= 2;
 }

@@ -21,13 +21,16 @@ std::vector<uint16_t> Gpio::registers() const {
 }
 
 Gpio::Port* Gpio::port_of(uint16_t address, unsigned* which) {
-    for (Port& port : ports_) {
-        if (address >= port.base && address < port.base + 3) {
-            *which = address - port.base;
-            return &port;
-        }
+    unsigned place = 0;
+    if (address >= kPortsFirst && address < kPortsEnd) {
+        place = address - kPortsFirst;
+    } else if (address >= kFarPortsFirst && address < kFarPortsEnd) {
+        place = address - kFarPortsFirst + (kPortsEnd - kPortsFirst);
+    } else {
+        return nullptr;
     }
-    return nullptr;
+    *which = place % 3;
+    return &ports_[place / 3];
 }
 
 uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
@@ -51,7 +54,8 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
         } else {
             byte(address) = value;
         }
-        output_changes_++;
+        const unsigned changed = (ddr(*port) ^ port->ddr_before) | (latch(*port) ^ port->latch_before);
+        shown_changes_ += (changed & port->shown) != 0;
         update(*port, cycle);
         return;
     } else {
@@ -126,7 +130,7 @@ void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycl
         port.taken |= pin.mask();
         drive_again(pin, source);
     }
-    output_changes_++;
+    note_shown(pin);
     update(port, cycle);
 }
 
@@ -147,7 +151,7 @@ void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
         first = nullptr;
     }
     second = nullptr;
-    output_changes_++;
+    note_shown(pin);
     update(port, cycle);
     if (was_silent) {
         announce(pin, cycle, level(pin, cycle));
@@ -202,7 +206,7 @@ void Gpio::state(Archive& archive) {
             port.watchers.fill(nullptr);
         }
     }
-    archive(output_changes_);
+    archive(shown_changes_);
 }
 
 } // namespace tilenca::avr

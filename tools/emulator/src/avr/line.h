@@ -53,6 +53,9 @@ class Line {
     void state(Archive& archive);
 
   private:
+    // Index of the first edge at or after `cycle`.
+    size_t first_from(uint64_t cycle) const;
+
     std::vector<Edge> edges_; // alternating levels, rising times, from index first_ on
     size_t first_ = 0;
     bool before_ = true; // the level before the first edge; an idle line is high

@@ -75,9 +75,41 @@ inline bool is_plain_push(const Cpu* cpu, uint16_t top, uint16_t count) {
     return static_cast<uint16_t>(lowest - cpu->stack_low) + count <= cpu->stack_room;
 }
 
+// A program writes SREG, whose flags then stand in the Cpu.
+inline void write_status(Cpu* cpu, uint8_t value, uint64_t cycle) {
+    if ((value & 0x80) != 0 && !cpu->interrupts_on) {
+        cpu->held_until = cycle + 1;
+        if (cpu->requests != 0) {
+            cpu->end_soon();
+        }
+    }
+    cpu->set_status(value);
+}
+
 // Memory outside SRAM. They keep the state in `cpu` (SREG is part of memory) and add to cpu->stall_cycles.
 uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh);
 void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint32_t carry, uint32_t zero,
                 uint32_t nvh);
 
 } // namespace tilenca::avr::ops
+
+namespace tilenca::avr {
+
+inline uint8_t Cpu::status(uint32_t with_carry, uint32_t with_zero, uint32_t with_nvh) const {
+    const bool negative = ops::is_negative(with_nvh), overflow = ops::is_overflow(with_nvh);
+    return static_cast<uint8_t>(with_carry | (with_zero == 0) << 1 | negative << 2 | overflow << 3 |
+                                ops::is_signed_less(with_nvh) << 4 | ops::is_half(with_nvh) << 5 |
+                                transfer << 6 | interrupts_on << 7);
+}
+
+inline void Cpu::set_status(uint8_t value) {
+    carry = value & 1;
+    zero = (value & 2) == 0;
+    const bool sign_differs = ((value >> 4 ^ value >> 3 ^ value >> 2) & 1) != 0;
+    nvh = ops::pack((value & 4u) << 5, (value & 8u) << 4, (value & 0x20u) >> 1) | uint32_t{sign_differs}
+                                                                                      << 31;
+    transfer = (value & 0x40) != 0;
+    interrupts_on = (value & 0x80) != 0;
+}
+
+} // namespace tilenca::avr

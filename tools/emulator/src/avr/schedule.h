@@ -46,7 +46,9 @@ class Schedule {
     explicit Schedule(Cpu& cpu) : cpu_(cpu) { due_.fill(kNever); }
 
     void set(Slot slot, uint64_t cycle) {
+        const uint32_t bit = 1u << static_cast<unsigned>(slot);
         due_[static_cast<size_t>(slot)] = cycle;
+        set_ = cycle == kNever ? set_ & ~bit : set_ | bit;
         if (cycle < cpu_.limit) {
             cpu_.limit = cycle;
         }
@@ -66,6 +68,10 @@ class Schedule {
     }
     void state(Archive& archive) {
         archive(due_, stopped_);
+        set_ = 0;
+        for (size_t i = 0; i < kSlots; i++) {
+            set_ |= uint32_t{due_[i] != kNever} << i;
+        }
         next_known_ = false;
     }
 
@@ -82,8 +88,9 @@ class Schedule {
     void find_next() {
         next_ = 0;
         next_due_ = kNever;
-        for (size_t i = 0; i < kSlots; i++) {
-            if (due_[i] < next_due_ && (stopped_ >> i & 1) == 0) {
+        for (uint32_t slots = set_ & ~stopped_; slots != 0; slots &= slots - 1) {
+            const auto i = static_cast<size_t>(__builtin_ctz(slots));
+            if (due_[i] < next_due_) {
                 next_ = i;
                 next_due_ = due_[i];
             }
@@ -96,6 +103,7 @@ class Schedule {
     size_t next_ = 0;
     uint64_t next_due_ = kNever;
     uint32_t stopped_ = 0; // a bit per slot
+    uint32_t set_ = 0;     // slots that have a time
     bool next_known_ = false;
 };
 

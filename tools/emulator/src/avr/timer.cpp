@@ -165,7 +165,14 @@ void Timer::write_value(unsigned offset, uint8_t value) {
     } else if (offset == kNarrowCount) {
         counter_.set_count(value);
     } else {
-        counter_.set_compare(offset - kNarrowCompare, value);
+        set_compare(offset - kNarrowCompare, value);
+    }
+}
+
+void Timer::set_compare(unsigned channel, uint16_t value) {
+    counter_.set_compare(channel, value);
+    if (driving_[channel]) {
+        gpio_.note_shown(pins_[channel]);
     }
 }
 
@@ -177,7 +184,7 @@ void Timer::write_wide(unsigned offset, uint16_t value) {
             counter_.set_capture(value);
         }
     } else {
-        counter_.set_compare((offset - kWideCompare) / 2, value);
+        set_compare((offset - kWideCompare) / 2, value);
     }
 }
 
@@ -207,9 +214,14 @@ void Timer::apply_mode() {
 
 void Timer::apply_clock(uint64_t cycle) {
     const uint8_t select = byte(control_b()) & 7;
-    divisor_ = number_ == 2 ? kTimer2Divisors[select] : kDivisors[select];
+    set_divisor(number_ == 2 ? kTimer2Divisors[select] : kDivisors[select]);
     external_clock_ = number_ != 2 && select >= 6 ? select : 0;
     watch_inputs(cycle);
+}
+
+void Timer::set_divisor(uint32_t divisor) {
+    divisor_ = divisor;
+    shift_ = static_cast<uint8_t>(divisor == 0 ? 0 : __builtin_ctz(divisor));
 }
 
 void Timer::restart_prescaler(uint64_t cycle) {
@@ -222,8 +234,9 @@ void Timer::reset(uint64_t cycle) {
     counter_.reset();
     counter_.set_mode(is_wide() ? kWideModes[0] : kNarrowModes[0]);
     driving_.fill(false);
+    drives_any_ = false;
     temp_ = 0;
-    divisor_ = 0;
+    set_divisor(0);
     external_clock_ = 0;
     comparator_captures_ = false;
     capture_due_ = kNever;

@@ -34,6 +34,7 @@ void Timer::apply_outputs(uint64_t cycle) {
         counter_.set_output(i, action);
         if ((action != 0) != driving_[i]) {
             driving_[i] = action != 0;
+            drives_any_ = driving_[0] || driving_[1] || driving_[2];
             if (driving_[i]) {
                 gpio_.take_over(pins_[i], this, true, cycle);
             } else {
@@ -63,7 +64,7 @@ double Timer::duty(PinId pin, uint64_t cycle) {
     return -1;
 }
 
-bool Timer::is_observed() const {
+bool Timer::is_output_observed() const {
     for (unsigned i = 0; i < channels(); i++) {
         if (driving_[i] && gpio_.is_observed(pins_[i])) {
             return true;
@@ -162,6 +163,8 @@ void Timer::state(Archive& archive) {
     archive(counter_, driving_, temp_, divisor_, origin_, synced_, external_clock_, comparator_captures_,
             capture_due_, told_flags_);
     if (archive.loading()) {
+        set_divisor(divisor_);
+        drives_any_ = driving_[0] || driving_[1] || driving_[2];
         for (unsigned i = 0; i < channels(); i++) {
             if (driving_[i]) {
                 gpio_.drive_again(pins_[i], this);

@@ -43,6 +43,9 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
       data_end_(data_end) {
     chip_.gpio().attach_line(kUsartPins[board::kHostUsart][0]);
     chip_.gpio().listen(kUsartPins[board::kHostUsart][1], &host_);
+    for (const board::Pin& segment : board::kSegments) {
+        chip_.gpio().show(on_chip(segment));
+    }
 }
 
 void Tile::run_until(double end) {
@@ -140,10 +143,10 @@ double Tile::wakes_at() {
 }
 
 void Tile::note_display() {
-    if (chip_.gpio().output_changes() == seen_changes_) {
+    if (chip_.gpio().shown_changes() == seen_changes_) {
         return;
     }
-    seen_changes_ = chip_.gpio().output_changes();
+    seen_changes_ = chip_.gpio().shown_changes();
     if (const uint8_t now = segments(); now != shown_) {
         shown_ = now;
         display_changes_.push_back({clock_.to_ticks(chip_.cpu().cycle), now});
