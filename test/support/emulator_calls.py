@@ -129,6 +129,7 @@ def other_bad_calls(w: World) -> dict[str, list[tuple[Any, ...]]]:
             *[(a, x, 0.0) for x in NO_NUMBERS],
             *[(a, 0.0, x) for x in NO_NUMBERS],
         ],
+        "array_set_cable_delay": [(null, 68e-6), *[(a, x) for x in (0, 19e-6, 261e-6, *NO_NUMBERS)]],
         "array_set_threads": [(null, 1), (a, 0), (a, 1025), (a, 2**32 - 1)],
         "array_run": [(null, 0.1), (a, -0.1), (a, 1e10), *[(a, seconds) for seconds in NO_NUMBERS]],
         "array_time": [(null,)],

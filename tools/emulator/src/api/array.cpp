@@ -2,6 +2,7 @@
 #include "api/private.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace tilenca::c_api;
 
@@ -69,6 +70,17 @@ int tilenca_array_remove_tile(tilenca_array* array, unsigned tile) {
     return attempted([&] {
         tile_of(array, tile);
         array->array.remove_tile(tile);
+    });
+}
+
+int tilenca_array_set_cable_delay(tilenca_array* array, double seconds) {
+    return attempted([&] {
+        const double ticks = std::round(seconds * tilenca::kTicksPerSecond);
+        check_range("a cable's delay in ticks of 16 MHz", ticks, tilenca::kLeastDelayTicks,
+                    tilenca::kMostDelayTicks);
+        if (!array_of(array).set_cable_delay(ticks)) {
+            throw Refusal("cables keep their delay once the array runs");
+        }
     });
 }
 

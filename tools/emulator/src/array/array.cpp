@@ -38,7 +38,7 @@ unsigned Array::add_tile(const Clock& clock) {
 // --- cables ---
 
 void Array::connect(End from, End to) {
-    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, writing_));
+    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, delay_, writing_));
 }
 
 void Array::rebuild_order() {
@@ -92,8 +92,7 @@ bool Array::unlink(End end) {
             continue;
         }
         Tile& to = tile(wire->to().tile);
-        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + kLinkLatencyTicks),
-                            true);
+        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + delay_), true);
     }
     wires_.erase(std::remove_if(wires_.begin(), wires_.end(),
                                 [&](const auto& wire) { return wire.get() == there || wire.get() == back; }),
@@ -114,6 +113,15 @@ void Array::remove_tile(unsigned index) {
 }
 
 // --- time ---
+
+bool Array::set_cable_delay(double ticks) {
+    if (now_ > 0) {
+        return false;
+    }
+    delay_ = ticks;
+    turn_ = turn_of(ticks);
+    return true;
+}
 
 // The time until which every tile sleeps; the present if one does not.
 double Array::idle_until() {
@@ -137,7 +145,7 @@ void Array::run_tile_until(unsigned index, double end) {
     }
     if (has_mail || sleeps_until_[index] < end) {
         Tile& tile = *tiles_[index];
-        tile.run_until(end);
+        tile.run_until(end, turn_end(end - 1));
         // A drifting clock tells the time of waking until its next step only.
         const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
         sleeps_until_[index] = tile.clock().drifts() ? std::min(tile.wakes_at(), step) : tile.wakes_at();
@@ -150,7 +158,8 @@ void Array::run_tile_until(unsigned index, double end) {
 }
 
 void Array::run_tile(unsigned index) {
-    for (double end = turn_begin_ + kQuantumTicks; end <= now_; end += kQuantumTicks) {
+    for (double end = turn_begin_; end < now_;) {
+        end = std::min(now_, turn_end(end));
         run_tile_until(index, end);
     }
 }
@@ -158,12 +167,12 @@ void Array::run_tile(unsigned index) {
 // Every tile is brought to the present; from here on anything may be done to it.
 void Array::catch_up() {
     for (auto& tile : tiles_) {
-        tile->run_until(now_);
+        tile->run_until(now_, turn_end(now_ - 1));
     }
     sleeps_until_.assign(tiles_.size(), 0);
 }
 
-void Array::run_quanta() {
+void Array::run_turn() {
     writing_ = 1 - writing_;
     if (workers_ != nullptr) {
         workers_->share(size());
@@ -184,11 +193,11 @@ void Array::run_for(double ticks) {
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
     catch_up(); // one that was halted has to
     while (now_ < end && !has_halted()) {
-        // Tiles that nothing joins can take many turns at once.
-        const double turns = wires_.empty() ? kTurnsAlone * kQuantumTicks : kQuantumTicks;
         turn_begin_ = std::min(end - kQuantumTicks, std::floor(idle_until() / kQuantumTicks) * kQuantumTicks);
-        now_ = std::min(end, turn_begin_ + turns);
-        run_quanta();
+        // Tiles that nothing joins can take many turns at once.
+        const double more = wires_.empty() ? kTurnsAlone * turn_ : 0;
+        now_ = std::min(end, turn_end(turn_begin_) + more);
+        run_turn();
     }
     catch_up();
     asked_for_ = now_ < end ? now_ : asked_for_;

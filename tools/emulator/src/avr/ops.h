@@ -2,6 +2,7 @@
 #pragma once
 
 #include "avr/cpu.h"
+#include "avr/effects.h"
 
 namespace tilenca::avr::ops {
 
@@ -24,30 +25,11 @@ void stop(TILENCA_STATE, const char* reason);
     return at->run(cpu, at, cycle, carry, zero, nvh);
 }
 
-constexpr uint32_t kHalfCarryMask = 0xFF0000;
-
-// N from `result`, V from bit 7 of `overflow`, H from bit 4 of `half`; all three at most 8 bits wide.
-inline uint32_t pack(uint32_t result, uint32_t overflow, uint32_t half) {
-    return result | overflow << 8 | half << 16;
-}
-
-// A result that clears V and leaves H alone.
-inline uint32_t logic(uint32_t result, uint32_t nvh) {
-    return result | (nvh & kHalfCarryMask);
-}
-
-inline bool is_negative(uint32_t nvh) {
-    return nvh & 0x80;
-}
-inline bool is_overflow(uint32_t nvh) {
-    return nvh & 0x8000;
-}
-inline bool is_half(uint32_t nvh) {
-    return nvh & 0x100000;
-}
-inline bool is_signed_less(uint32_t nvh) {
-    return (nvh >> 7 ^ nvh >> 15 ^ nvh >> 31) & 1;
-}
+using effects::is_half;
+using effects::is_negative;
+using effects::is_overflow;
+using effects::is_signed_less;
+using effects::pack;
 
 // Two bytes rather than one 16-bit load, which the compiler would make of it: the pair is often written byte
 // by byte just before, and the host would have to wait for both stores.
@@ -96,10 +78,7 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
 namespace tilenca::avr {
 
 inline uint8_t Cpu::status(uint32_t with_carry, uint32_t with_zero, uint32_t with_nvh) const {
-    const bool negative = ops::is_negative(with_nvh), overflow = ops::is_overflow(with_nvh);
-    return static_cast<uint8_t>(with_carry | (with_zero == 0) << 1 | negative << 2 | overflow << 3 |
-                                ops::is_signed_less(with_nvh) << 4 | ops::is_half(with_nvh) << 5 |
-                                transfer << 6 | interrupts_on << 7);
+    return static_cast<uint8_t>(effects::status(with_carry, with_zero, with_nvh, transfer, interrupts_on));
 }
 
 inline void Cpu::set_status(uint8_t value) {

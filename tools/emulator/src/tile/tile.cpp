@@ -48,21 +48,28 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
     }
 }
 
-void Tile::run_until(double end) {
-    clock_.follow_drift(end);
-    if (const uint64_t cycle = clock_.to_cycle(end); cycle != 0) {
+void Tile::run_until(double end, double turn_end) {
+    clock_.follow_drift(turn_end);
+    const uint64_t cycle = clock_.to_cycle(end);
+    if (cycle != 0) {
         if (powered_) {
             execute_until(end);
         } else if (cycle > chip_.cpu().cycle) {
             cycles_off_ += cycle - chip_.cpu().cycle;
             chip_.pass_while_off(cycle);
         }
+    }
+    const bool turn_ends = end == turn_end;
+    if (turn_ends && cycle != 0) {
         note_display();
         host_.follow(bit_ticks(board::kHostUsart));
     }
-    host_.run_until(end);
+    host_.receive_until(end);
+    if (turn_ends) {
+        host_.send_until(end);
+    }
     for (const auto& probe : probes_) {
-        if (probe->follows()) {
+        if (turn_ends && probe->follows()) {
             probe->receiver().follow(bit_ticks(probe->pin()));
         }
         probe->settle(end);
