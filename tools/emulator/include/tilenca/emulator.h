@@ -100,6 +100,16 @@ TILENCA_API int tilenca_array_symbol(tilenca_array* array, const char* name, uin
 // The function that contains a byte of flash; "": none. Valid until the next call of this.
 TILENCA_API const char* tilenca_array_function_at(tilenca_array* array, uint32_t address);
 
+// --- translated blocks: the same results in less time ---
+
+// Counts instructions from now on, for tilenca_array_translated; before the array runs, on one thread.
+TILENCA_API int tilenca_array_count_instructions(tilenca_array* array);
+// C++ that does what the instructions that were counted most do, for a compiler that makes a shared library
+// of it. Valid until the next call of this.
+TILENCA_API const char* tilenca_array_translated(tilenca_array* array);
+// Executes the blocks of such a library, of the same image and version of the emulator.
+TILENCA_API int tilenca_array_use_translation(tilenca_array* array, const char* path);
+
 // --- cables ---
 
 // Lays a cable between sides of two tiles; fails where one is already.

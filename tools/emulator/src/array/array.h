@@ -49,6 +49,13 @@ class Array {
     double now() const { return now_; }
     void set_threads(unsigned threads);
 
+    // Counts instructions from now on; before the array runs.
+    void count_instructions();
+    // C++ that does what the instructions that were counted most do.
+    std::string translated() const;
+    // Executes the blocks of a translation in place of instructions. False: it is of another image.
+    bool use_translation(const std::string& path);
+
     Tile& tile(unsigned index) { return *tiles_[index]; }
     unsigned size() const { return static_cast<unsigned>(tiles_.size()); }
     bool has_halted() const;

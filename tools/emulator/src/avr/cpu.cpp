@@ -63,10 +63,12 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
 
 } // namespace ops
 
-void Cpu::use(const Program& image) {
+void Cpu::use(const Program& program_image) {
     const uint32_t word = program == nullptr ? 0 : pc();
-    program = image.instructions();
-    flash = image.bytes();
+    program = program_image.instructions();
+    image = &program_image;
+    counts = program_image.counts();
+    flash = program_image.bytes();
     at = program + word;
 }
 
@@ -110,7 +112,8 @@ void Cpu::take_interrupt() {
 
 // Executes instructions up to `limit`, at least one.
 void Cpu::execute() {
-    at->run(this, at, cycle, carry, zero, nvh);
+    const Handler first = cycle < limit ? at->run : image->alone(pc());
+    first(this, at, cycle, carry, zero, nvh);
     if (!trap_hit) {
         return;
     }

@@ -49,6 +49,8 @@ struct Cpu {
     uint64_t limit = 0;          // the cycle at which the running instructions hand control back
     uint8_t special[kSramStart]; // kReadsThroughBus, kWritesThroughBus
     const Instruction* program = nullptr;
+    const Program* image = nullptr; // which `program` belongs to
+    Counts* counts = nullptr;       // of its instructions, if they are counted
     const uint8_t* flash = nullptr;
     uint32_t flash_limit = 0; // what lies beyond is not to be read without asking the bus
     // Pushes into [stack_low, stack_low + stack_room) are plain; all others are looked at.
