@@ -90,7 +90,8 @@ void Counter::advance_far(uint64_t ticks) {
 // Runs to the next value at which anything can happen and leaves it, or as far as `ticks` go; returns the
 // ticks taken.
 uint64_t Counter::step(uint64_t ticks) {
-    const uint64_t whole = ticks_to_boundary();
+    const uint64_t whole = free_ticks_ != 0 ? free_ticks_ : ticks_to_boundary();
+    free_ticks_ = 0;
     const uint64_t taken = std::min(whole, ticks);
     const auto passed = static_cast<uint16_t>(taken == whole ? whole - 1 : taken);
     count_ = static_cast<uint16_t>(down_ ? count_ - passed : count_ + passed);

@@ -6,12 +6,14 @@ namespace {
 
 // The bits must be asked for in order.
 bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
-    int high = 0;
-    for (int back = 2; back >= 0; back--) {
-        const double when = sampling.decided(bit) - back * sampling.period;
-        high += line.at(static_cast<uint64_t>(when));
+    const double last = sampling.decided(bit);
+    const auto sample = [&](int back) { return static_cast<uint64_t>(last - back * sampling.period); };
+    const bool first = line.at(sample(2));
+    if (line.stays_until(sample(0))) {
+        return first;
     }
-    return high >= 2;
+    const bool second = line.at(sample(1)), third = line.at(sample(0));
+    return first + second + third >= 2;
 }
 
 } // namespace

@@ -75,15 +75,15 @@ uint8_t Gpio::pins_as_read(Port& port, uint64_t cycle) {
 
 uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch) {
     uint8_t outside = port.held;
-    for (unsigned bit = 0; port.has_lines >> bit != 0; bit++) {
-        if (port.lines[bit] != nullptr && !port.lines[bit]->level_at(cycle)) {
-            outside &= static_cast<uint8_t>(~(1 << bit));
-        }
+    for (unsigned lines = port.has_lines & ~ddr; lines != 0; lines &= lines - 1) {
+        const int bit = __builtin_ctz(lines);
+        outside &= static_cast<uint8_t>(~(!port.lines[bit]->level_at(cycle) << bit));
     }
     uint8_t driven = latch;
     const auto index = static_cast<uint8_t>(&port - ports_.data());
-    for (uint8_t bit = 0; port.taken >> bit != 0; bit++) {
-        if (port.sources[bit] != nullptr && (port.taken >> bit & 1) != 0) {
+    for (unsigned taken = port.taken & ddr; taken != 0; taken &= taken - 1) {
+        const auto bit = static_cast<uint8_t>(__builtin_ctz(taken));
+        if (port.sources[bit] != nullptr) {
             bool high = port.sources[bit]->pin_level({index, bit}, cycle);
             if (port.modulators[bit] != nullptr) {
                 const bool other = port.modulators[bit]->pin_level({index, bit}, cycle);
@@ -103,10 +103,10 @@ void Gpio::update(Port& port, uint64_t cycle) {
     port.levels = after;
     const auto index = static_cast<uint8_t>(&port - ports_.data());
     const auto changed = static_cast<uint8_t>(before ^ after);
-    for (uint8_t bit = 0; bit < 8; bit++) {
+    for (unsigned told = changed & port.watched_out; told != 0; told &= told - 1) {
+        const auto bit = static_cast<uint8_t>(__builtin_ctz(told));
         // What a USART has taken over is announced by it alone.
-        const bool ours = (port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr;
-        if ((changed & port.watched_out) >> bit & 1 && ours) {
+        if ((port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr) {
             tell({index, bit}, cycle, (after >> bit & 1) != 0);
         }
     }
@@ -185,6 +185,7 @@ void Gpio::reset(uint64_t cycle) {
         port.modulators.fill(nullptr);
         update(port, cycle);
     }
+    note_watched_ports();
     core_.schedule.cancel(Slot::Lines);
 }
 
@@ -207,6 +208,7 @@ void Gpio::state(Archive& archive) {
         }
     }
     archive(shown_changes_);
+    note_watched_ports();
 }
 
 } // namespace tilenca::avr

@@ -148,10 +148,12 @@ class Gpio final : public Peripheral {
     void update_requests();
     uint8_t external_watched() const;
     void update_watched(uint64_t cycle);
+    void note_watched_ports();
     void schedule_lines(uint64_t cycle);
     uint8_t sense(unsigned number) const;
 
     std::array<Port, kPorts> ports_;
+    uint16_t watched_ports_ = 0; // those with a pin that is watched_in
     uint64_t shown_changes_ = 0;
     std::function<void(uint64_t)> int0_ = [](uint64_t) {};
 };

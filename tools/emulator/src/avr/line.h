@@ -33,6 +33,10 @@ class Line {
             }
             return level_;
         }
+        // Whether the level of the last call is also that of `cycle`.
+        bool stays_until(uint64_t cycle) const {
+            return next_ == line_.edges_.size() || line_.edges_[next_].cycle > cycle;
+        }
 
       private:
         const Line& line_;

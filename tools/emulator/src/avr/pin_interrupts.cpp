@@ -132,28 +132,34 @@ void Gpio::update_watched(uint64_t cycle) {
             update(port, cycle);
         }
     }
+    note_watched_ports();
     schedule_lines(cycle);
     tell_sources();
 }
 
+void Gpio::note_watched_ports() {
+    watched_ports_ = 0;
+    for (unsigned i = 0; i < kPorts; i++) {
+        watched_ports_ |= static_cast<uint16_t>((ports_[i].watched_in != 0) << i);
+    }
+}
+
 void Gpio::schedule_lines(uint64_t cycle) {
     uint64_t soonest = kNever;
-    for (Port& port : ports_) {
-        for (unsigned bit = 0; port.watched_in >> bit != 0; bit++) {
-            if ((port.watched_in >> bit & 1) != 0) {
-                const Line::Edge* edge = port.lines[bit]->next_after(cycle);
-                soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
-            }
+    for (unsigned ports = watched_ports_; ports != 0; ports &= ports - 1) {
+        const Port& port = ports_[static_cast<unsigned>(__builtin_ctz(ports))];
+        for (unsigned pins = port.watched_in; pins != 0; pins &= pins - 1) {
+            const Line::Edge* edge =
+                port.lines[static_cast<unsigned>(__builtin_ctz(pins))]->next_after(cycle);
+            soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
         }
     }
     core_.schedule.set(Slot::Lines, soonest);
 }
 
 void Gpio::on_event(Slot, uint64_t cycle) {
-    for (Port& port : ports_) {
-        if (port.watched_in != 0) {
-            update(port, cycle);
-        }
+    for (unsigned ports = watched_ports_; ports != 0; ports &= ports - 1) {
+        update(ports_[static_cast<unsigned>(__builtin_ctz(ports))], cycle);
     }
     schedule_lines(cycle);
 }

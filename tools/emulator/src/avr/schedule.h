@@ -90,10 +90,9 @@ class Schedule {
         next_due_ = kNever;
         for (uint32_t slots = set_ & ~stopped_; slots != 0; slots &= slots - 1) {
             const auto i = static_cast<size_t>(__builtin_ctz(slots));
-            if (due_[i] < next_due_) {
-                next_ = i;
-                next_due_ = due_[i];
-            }
+            const bool is_sooner = due_[i] < next_due_; // no branch: nobody could foretell it
+            next_ = is_sooner ? i : next_;
+            next_due_ = is_sooner ? due_[i] : next_due_;
         }
         next_known_ = true;
     }

@@ -148,7 +148,12 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     } else if (address < base_ + first_value) {
         write_control(address, value, cycle);
     } else {
-        write_value(address - base_, value);
+        const unsigned offset = address - base_;
+        if (is_wide() && (offset & 1) != 0) { // waits for the low byte, and nothing has changed yet
+            temp_ = value;
+            return;
+        }
+        write_value(offset, value);
     }
     update_requests();
     reschedule();
@@ -157,11 +162,7 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
 
 void Timer::write_value(unsigned offset, uint8_t value) {
     if (is_wide()) {
-        if ((offset & 1) != 0) {
-            temp_ = value;
-        } else {
-            write_wide(offset, static_cast<uint16_t>(temp_ << 8 | value));
-        }
+        write_wide(offset, static_cast<uint16_t>(temp_ << 8 | value));
     } else if (offset == kNarrowCount) {
         counter_.set_count(value);
     } else {
@@ -234,7 +235,7 @@ void Timer::reset(uint64_t cycle) {
     counter_.reset();
     counter_.set_mode(is_wide() ? kWideModes[0] : kNarrowModes[0]);
     driving_.fill(false);
-    drives_any_ = false;
+    is_observed_ = false;
     temp_ = 0;
     set_divisor(0);
     external_clock_ = 0;

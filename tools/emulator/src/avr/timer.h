@@ -22,7 +22,10 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
     bool pin_level(PinId pin, uint64_t cycle) override;
-    void observers_changed() override { reschedule(); }
+    void observers_changed() override {
+        look_for_observers();
+        reschedule();
+    }
     void state(Archive& archive) override;
 
     // Calls `call` whenever one of the flags in `mask` is set.
@@ -45,8 +48,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     void capture(uint64_t cycle);
     void watch_inputs(uint64_t cycle);
     bool captures() const;
-    bool is_observed() const { return drives_any_ && is_output_observed(); }
-    bool is_output_observed() const;
+    void look_for_observers();
     void show_outputs(uint64_t cycle);
     bool is_wide() const { return number_ == 1 || number_ >= 3; }
     unsigned channels() const { return is_wide() ? 3 : 2; }
@@ -75,11 +77,11 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     Counter counter_;
     std::array<PinId, 3> pins_{};
     std::array<bool, 3> driving_{};
-    bool drives_any_ = false;
-    uint8_t temp_ = 0;     // the byte a 16-bit access leaves for its second half
-    uint32_t divisor_ = 0; // 0: the clock is stopped
-    uint8_t shift_ = 0;    // the divisor's logarithm
-    uint64_t origin_ = 0;  // cycle the prescaler counts from
+    bool is_observed_ = false; // somebody must know when an output changes
+    uint8_t temp_ = 0;         // the byte a 16-bit access leaves for its second half
+    uint32_t divisor_ = 0;     // 0: the clock is stopped
+    uint8_t shift_ = 0;        // the divisor's logarithm
+    uint64_t origin_ = 0;      // cycle the prescaler counts from
     uint64_t synced_ = 0;
     uint8_t external_clock_ = 0; // 6: falling edges of the T pin, 7: rising ones, 0: none
     bool comparator_captures_ = false;

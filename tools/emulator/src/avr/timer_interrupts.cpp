@@ -33,7 +33,7 @@ void Timer::reschedule() {
     uint64_t due = capture_due_;
     if (divisor_ != 0 && !clock_stands()) {
         uint64_t ticks = wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
-        if (is_observed()) {
+        if (is_observed_) {
             const uint64_t change = counter_.ticks_to_change();
             ticks = ticks == 0 ? change : std::min(ticks, change);
         }

@@ -34,12 +34,12 @@ void Timer::apply_outputs(uint64_t cycle) {
         counter_.set_output(i, action);
         if ((action != 0) != driving_[i]) {
             driving_[i] = action != 0;
-            drives_any_ = driving_[0] || driving_[1] || driving_[2];
             if (driving_[i]) {
                 gpio_.take_over(pins_[i], this, true, cycle);
             } else {
                 gpio_.release(pins_[i], cycle, this);
             }
+            look_for_observers();
         }
     }
 }
@@ -64,17 +64,15 @@ double Timer::duty(PinId pin, uint64_t cycle) {
     return -1;
 }
 
-bool Timer::is_output_observed() const {
+void Timer::look_for_observers() {
+    is_observed_ = false;
     for (unsigned i = 0; i < channels(); i++) {
-        if (driving_[i] && gpio_.is_observed(pins_[i])) {
-            return true;
-        }
+        is_observed_ = is_observed_ || (driving_[i] && gpio_.is_observed(pins_[i]));
     }
-    return false;
 }
 
 void Timer::show_outputs(uint64_t cycle) {
-    if (is_observed()) {
+    if (is_observed_) {
         for (unsigned i = 0; i < channels(); i++) {
             if (driving_[i]) {
                 gpio_.source_changed(pins_[i], cycle);
@@ -164,7 +162,6 @@ void Timer::state(Archive& archive) {
             capture_due_, told_flags_);
     if (archive.loading()) {
         set_divisor(divisor_);
-        drives_any_ = driving_[0] || driving_[1] || driving_[2];
         for (unsigned i = 0; i < channels(); i++) {
             if (driving_[i]) {
                 gpio_.drive_again(pins_[i], this);
@@ -176,6 +173,7 @@ void Timer::state(Archive& archive) {
         if (captures()) {
             gpio_.watch_again(kInputs[number_].capture, this);
         }
+        look_for_observers();
     }
 }
 

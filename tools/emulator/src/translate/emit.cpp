@@ -1,12 +1,10 @@
 #include "translate/emit.h"
 
-#include "avr/cpu.h"
-#include "effects_text.h"
 #include "translate/forms.h"
+#include "translate/frame.h"
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <map>
 
 namespace tilenca::translate {
@@ -15,46 +13,6 @@ namespace {
 
 constexpr unsigned kTextVersion = 1;   // one more with every change of what is emitted
 constexpr unsigned kStackPointer = 32; // among the registers
-
-// What comes after the places of the core's members and before the functions.
-constexpr const char* kPrelude = R"text(
-using namespace tilenca::avr::effects;
-
-struct Cpu;
-struct Instruction;
-using Handler = void (*)(Cpu*, const Instruction*, uint64_t, uint32_t, uint32_t, uint32_t);
-struct Instruction {
-    Handler run;
-    uint64_t operands;
-};
-
-#define STATE Cpu *cpu, const Instruction *at, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh
-#define PASSED cpu, at, cycle, carry, zero, nvh
-#define MEMBER(type, place) (*reinterpret_cast<type*>(reinterpret_cast<char*>(cpu) + (place)))
-#define DATA(address) (reinterpret_cast<uint8_t*>(cpu)[address])
-#define LIMIT MEMBER(const uint64_t, AT_LIMIT)
-#define TRANSFER MEMBER(bool, AT_TRANSFER)
-#define INTERRUPTS MEMBER(bool, AT_INTERRUPTS)
-#define FLASH MEMBER(const uint8_t* const, AT_FLASH)
-#define FLASH_LIMIT MEMBER(const uint32_t, AT_FLASH_LIMIT)
-#define PROGRAM MEMBER(const Instruction* const, AT_PROGRAM)
-#define IS_SRAM(address) ((address) - 0x200u < 0x2000u)
-#define IS_PLAIN_PUSH(top, count)                                                          \
-    (static_cast<uint16_t>((top) - (count) + 1u - MEMBER(const uint16_t, AT_STACK_LOW)) + (count) <= \
-     MEMBER(const uint16_t, AT_STACK_ROOM))
-#define RARE(condition) __builtin_expect(condition, 0)
-
-namespace {
-
-Handler handlers[COUNT], leave;
-
-[[gnu::always_inline]] inline void next(STATE) {
-    if (RARE(cycle >= LIMIT)) {
-        return leave(PASSED);
-    }
-    return at->run(PASSED);
-}
-)text";
 
 // A block's function. Registers are variables: read when it is entered, written back wherever it is left.
 class Function {
@@ -90,7 +48,7 @@ class Function {
             write("again:");
         }
         write("if (RARE(cycle + " + std::to_string(last_start_) + " >= LIMIT)) {" + (loops_ ? flush() : "") +
-              " if (cycle >= LIMIT) return leave(PASSED); return handlers[" + own + "](PASSED); }");
+              " return interpret_first<" + own + ">(PASSED); }");
         text_ += body;
         write("}\n");
         return text_;
@@ -157,11 +115,13 @@ class Function {
     }
 
     // Leaves the block before an instruction, which the interpreter executes.
-    std::string interpret(uint32_t word) const {
+    std::string interpret(uint32_t word, bool always = false) const {
         if (word == begin_) {
-            return "{" + flush() + " return handlers[" + std::to_string(numbers_.at(begin_)) + "](PASSED); }";
+            return "{" + flush() + " return interpret_first<" + std::to_string(numbers_.at(begin_)) +
+                   ">(PASSED); }";
         }
-        return "{" + flush() + " at += " + std::to_string(word - begin_) + "; return at->run(PASSED); }";
+        return "{" + flush() + " at += " + std::to_string(word - begin_) + "; return " +
+               (always ? "at->run" : "interpret") + "(PASSED); }";
     }
 
     void go(uint32_t to) {
@@ -258,7 +218,7 @@ class Function {
             go_to_computed();
             break;
         default:
-            write(interpret(word));
+            write(interpret(word, true));
         }
         ended_ = true;
     }
@@ -276,81 +236,21 @@ class Function {
     unsigned last_start_ = 0; // of the last instruction, at most
 };
 
-std::string define(const char* name, size_t place) {
-    return std::string("#define ") + name + " " + std::to_string(place) + "\n";
-}
-
-std::string places() {
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Winvalid-offsetof"
-    return define("AT_LIMIT", offsetof(avr::Cpu, limit)) +
-           define("AT_TRANSFER", offsetof(avr::Cpu, transfer)) +
-           define("AT_INTERRUPTS", offsetof(avr::Cpu, interrupts_on)) +
-           define("AT_FLASH", offsetof(avr::Cpu, flash)) +
-           define("AT_FLASH_LIMIT", offsetof(avr::Cpu, flash_limit)) +
-           define("AT_PROGRAM", offsetof(avr::Cpu, program)) +
-           define("AT_STACK_LOW", offsetof(avr::Cpu, stack_low)) +
-           define("AT_STACK_ROOM", offsetof(avr::Cpu, stack_room));
-#pragma GCC diagnostic pop
-}
-
-std::string table_of(const avr::Program& program, const std::vector<Block>& blocks) {
-    std::string begins, functions, words, code;
-    size_t count = 0;
-    for (size_t i = 0; i < blocks.size(); i++) {
-        begins += std::to_string(blocks[i].words[0]) + ",";
-        functions += "block" + std::to_string(i) + ",";
-        for (const uint32_t word : blocks[i].words) {
-            for (uint32_t one = word; one < word_after(program, word); one++, count++) {
-                words += std::to_string(one) + ",";
-                code += std::to_string(program.word(one)) + ",";
-            }
-        }
-    }
-    return "const uint32_t begins[] = {" + begins + "};\nconst Handler functions[] = {" + functions +
-           "};\nconst uint32_t code_words[] = {" + words + "};\nconst uint16_t code[] = {" + code +
-           "};\n\n} // namespace\n\nextern \"C\" const struct {\n    const char* layout;\n    uint32_t "
-           "count;\n"
-           "    const uint32_t* begins;\n    const Handler* functions;\n    Handler* handlers;\n    Handler* "
-           "leave;\n"
-           "    uint32_t code_count;\n    const uint32_t* code_words;\n    const uint16_t* code;\n"
-           "} tilenca_blocks __attribute__((visibility(\"default\"))) = {LAYOUT, COUNT, begins, functions, "
-           "handlers, "
-           "&leave, " +
-           std::to_string(count) + ", code_words, code};\n";
-}
-
 } // namespace
-
-std::string layout() {
-    std::string all = std::to_string(kTextVersion);
-    for (const char c : places()) { // the numbers tell it all
-        all += c == '\n' ? ' ' : (c >= '0' && c <= '9' ? c : 0);
-    }
-    std::string shown;
-    for (const char c : all) {
-        if (c != 0) {
-            shown += c;
-        }
-    }
-    return shown;
-}
 
 std::string source_of(const avr::Program& program, const std::vector<Block>& blocks, const uint8_t* special) {
     std::map<uint32_t, size_t> numbers;
     for (const Block& block : blocks) {
         numbers.emplace(block.words[0], numbers.size());
     }
-    std::string text = "// Translated from an image's instructions; not to be read.\n";
-    text += kEffectsText;
-    text += places() + define("COUNT", blocks.size()) + "#define LAYOUT \"" + layout() + "\"\n" + kPrelude;
+    std::string text = head_of(blocks.size());
     for (size_t i = 0; i < blocks.size(); i++) {
         text += "void block" + std::to_string(i) + "(STATE);\n";
     }
     for (const Block& block : blocks) {
         text += Function(program, numbers, block, special).text();
     }
-    return text + table_of(program, blocks);
+    return text + tail_of(program, blocks);
 }
 
 } // namespace tilenca::translate

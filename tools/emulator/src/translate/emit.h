@@ -7,9 +7,6 @@
 
 namespace tilenca::translate {
 
-// What a library must agree with: the places of the core's members, and this version of the text.
-std::string layout();
-
 // A function for each block, and the table of them. `special` as in avr::Cpu.
 std::string source_of(const avr::Program& program, const std::vector<Block>& blocks, const uint8_t* special);
 

@@ -1,7 +1,7 @@
 #include "translate/translation.h"
 
 #include "avr/ops.h"
-#include "translate/emit.h"
+#include "translate/frame.h"
 
 #include <dlfcn.h>
 #include <map>
