@@ -11,6 +11,7 @@ from tilenca.base.errors import TilencaError, UsageError, image_error
 from tilenca.base.sides import SIDES
 from tilenca.emulator.library import call, library, new, text
 from tilenca.emulator.tile import DATA_SPACE, EmulatedTile
+from tilenca.emulator.translation import Translator
 
 MOST_DELAY_S = 1.0
 # What a cable takes. Tiles run in turns a little shorter than it; docs/EMULATOR.md says why nothing can tell.
@@ -59,6 +60,7 @@ class Array:
         bootloader: Path | str | None = None,
         threads: int = 1,
         cable_delay_s: float = CABLE_DELAY_S,
+        translated: bool = True,
     ) -> None:
         """Builds the tiles; nothing runs yet.
 
@@ -72,6 +74,7 @@ class Array:
             threads: how many share the work; they change nothing else.
             cable_delay_s: seconds from a pin to the pin at the other end of a cable, 20e-6 to 260e-6; the
                 longer, the less time the emulation takes.
+            translated: whether to use a translation of the image, if there is one; it changes nothing else.
 
         Raises:
             BuildError: the emulator is not built.
@@ -92,6 +95,8 @@ class Array:
         except UsageError as error:
             raise image_error(str(error)) from None
         call("array_set_cable_delay", self._handle, cable_delay_s)
+        self._translator = Translator(Path(image), translated)
+        self._translator.use(self._handle)
         self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
         for link in links:
             self.link(*link)
@@ -107,6 +112,11 @@ class Array:
         if self._handle is None:
             raise UsageError("the array is closed; build another")
         return self._handle
+
+    @property
+    def is_translated(self) -> bool:
+        """Whether the tiles execute translated blocks; `tilenca.emulator.translation` says what that is."""
+        return self._translator.in_use
 
     # --- tiles and cables, also while it runs ---
 
@@ -186,7 +196,9 @@ class Array:
         Raises:
             TilencaError: a tile stopped at a fault; the message names tile, place and fact.
         """
-        if call("array_run", self.handle, seconds):
+        stopped = call("array_run", self.handle, seconds)
+        self._translator.note(self._handle, seconds * len(self))
+        if stopped:
             raise TilencaError(next(tile.fault for tile in self._tiles if tile.fault))
 
     @property
