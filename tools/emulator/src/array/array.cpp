@@ -138,17 +138,19 @@ double Array::idle_until() {
     return soonest;
 }
 
-void Array::run_tile_until(unsigned index, double end) {
+void Array::run_tile_until(unsigned index, double end, double its_turn_end) {
     bool has_mail = false;
     for (Wire* wire : into_[index]) {
         has_mail = wire->deliver() || has_mail;
     }
     if (has_mail || sleeps_until_[index] < end) {
         Tile& tile = *tiles_[index];
-        tile.run_until(end, turn_end(end - 1));
-        // A drifting clock tells the time of waking until its next step only.
-        const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
-        sleeps_until_[index] = tile.clock().drifts() ? std::min(tile.wakes_at(), step) : tile.wakes_at();
+        tile.run_until(end, its_turn_end);
+        sleeps_until_[index] = tile.wakes_at();
+        if (tile.clock().drifts()) { // it tells the time of waking until its next step only
+            const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
+            sleeps_until_[index] = std::min(sleeps_until_[index], step);
+        }
     }
     for (Wire* wire : out_of_[index]) {
         if (wire->has_fault()) {
@@ -159,8 +161,9 @@ void Array::run_tile_until(unsigned index, double end) {
 
 void Array::run_tile(unsigned index) {
     for (double end = turn_begin_; end < now_;) {
-        end = std::min(now_, turn_end(end));
-        run_tile_until(index, end);
+        const double its_turn_end = turn_end(end);
+        end = std::min(now_, its_turn_end);
+        run_tile_until(index, end, its_turn_end);
     }
 }
 

@@ -75,7 +75,7 @@ class Array {
     // The end of the turn that a moment lies in.
     double turn_end(double ticks) const { return (std::floor(ticks / turn_) + 1) * turn_; }
     void run_tile(unsigned index);
-    void run_tile_until(unsigned index, double end);
+    void run_tile_until(unsigned index, double end, double turn_end);
     void catch_up();
     void connect(End from, End to);
     void rebuild_order();

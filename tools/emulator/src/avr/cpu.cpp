@@ -99,11 +99,17 @@ void Cpu::take_interrupt() {
     interrupts_on = false;
     const uint32_t word = pc();
     uint16_t top = ops::pair(this, ops::kStackPointer);
-    if (!grow_stack(top, static_cast<uint16_t>(top - 2))) {
+    const bool is_plain = ops::is_plain_push(this, top, 3);
+    if (!is_plain && !grow_stack(top, static_cast<uint16_t>(top - 2))) {
         return;
     }
     for (unsigned i = 0; i < 3; i++, top--) {
-        ops::write_slow(this, top, static_cast<uint8_t>(word >> (8 * i)), cycle, carry, zero, nvh);
+        const auto byte = static_cast<uint8_t>(word >> (8 * i));
+        if (is_plain) {
+            data[top] = byte;
+        } else {
+            ops::write_slow(this, top, byte, cycle, carry, zero, nvh);
+        }
     }
     ops::set_pair(this, ops::kStackPointer, top);
     at = program + vector_base + vector * 2;
@@ -136,7 +142,7 @@ void Cpu::leave_breakpoint() {
 
 void Cpu::run(uint64_t until) {
     while (cycle < until && fault.empty() && !halted && !yields) {
-        const uint64_t next_event = bus->serve_events(cycle);
+        const uint64_t next_event = event_due > cycle ? event_due : bus->serve_events(cycle);
         const bool wanted = requests != 0 && interrupts_on;
         if (wanted && cycle > held_until) {
             take_interrupt();

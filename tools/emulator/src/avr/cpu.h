@@ -62,7 +62,8 @@ struct Cpu {
     uint64_t cycle = 0;
     uint32_t carry = 0, zero = 1, nvh = 0;
 
-    uint64_t requests = 0; // bit v: interrupt vector v asks to be served
+    uint64_t event_due = 0; // of the next event; 0: not known, the bus has to be asked
+    uint64_t requests = 0;  // bit v: interrupt vector v asks to be served
     uint64_t held_until =
         0; // no interrupt is taken at or before this cycle: the instruction after SEI runs first
     uint64_t sleep_cycles = 0;

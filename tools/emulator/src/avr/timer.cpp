@@ -109,6 +109,10 @@ void Timer::advance(uint64_t ticks, uint64_t cycle) {
 }
 
 uint8_t Timer::read(uint16_t address, uint64_t cycle) {
+    const unsigned offset = static_cast<unsigned>(address) - base_;
+    if (offset - first_compare() < (is_wide() ? 6u : 2u)) { // compare registers: time changes nothing there
+        return read_value(offset);
+    }
     sync(cycle);
     if (address == flag_register_) {
         return counter_.flags;
@@ -154,10 +158,26 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
             return;
         }
         write_value(offset, value);
+        if (offset >= first_compare() && !compare_matters(offset - first_compare())) {
+            return;
+        }
     }
     update_requests();
     reschedule();
     show_outputs(cycle);
+}
+
+unsigned Timer::first_compare() const {
+    return is_wide() ? kWideCompare : kNarrowCompare;
+}
+
+// Whether anything but a flag that nobody waits for can come of a compare register's new value: some programs
+// keep their variables there.
+bool Timer::compare_matters(unsigned offset) const {
+    const unsigned channel = is_wide() ? offset / 2 : offset;
+    const bool is_waited_for = ((byte(mask_register_) | told_flags_) & kFlagCompareA << channel) != 0;
+    const WaveMode& mode = counter_.mode();
+    return is_waited_for || driving_[channel] || mode.top == Top::CompareA || mode.wave >= Wave::Fast;
 }
 
 void Timer::write_value(unsigned offset, uint8_t value) {

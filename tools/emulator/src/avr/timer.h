@@ -59,6 +59,8 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) >> shift_; }
     void write_control(uint16_t address, uint8_t value, uint64_t cycle);
     void write_value(unsigned offset, uint8_t value);
+    unsigned first_compare() const;
+    bool compare_matters(unsigned offset) const;
     void set_compare(unsigned channel, uint16_t value);
     uint8_t read_value(unsigned offset);
     void write_wide(unsigned offset, uint16_t value);

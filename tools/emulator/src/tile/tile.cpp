@@ -53,7 +53,7 @@ void Tile::run_until(double end, double turn_end) {
     const uint64_t cycle = clock_.to_cycle(end);
     if (cycle != 0) {
         if (powered_) {
-            execute_until(end);
+            execute_until(end, cycle);
         } else if (cycle > chip_.cpu().cycle) {
             cycles_off_ += cycle - chip_.cpu().cycle;
             chip_.pass_while_off(cycle);
@@ -87,12 +87,12 @@ uint16_t Tile::stack_floor() const {
     return std::max(data_end_.fixed, static_cast<uint16_t>(heap[0] | heap[1] << 8));
 }
 
-void Tile::execute_until(double end) {
+void Tile::execute_until(double end, uint64_t cycle) {
     avr::Cpu& cpu = chip_.cpu();
     if (const uint16_t floor = stack_floor(); floor != cpu.stack_floor) {
         cpu.set_stack_floor(floor);
     }
-    chip_.run_until(clock_.to_cycle(end));
+    chip_.run_until(cycle);
     while (cpu.yields) { // its program has changed the speed of its clock
         cpu.yields = false;
         clock_.divide(cpu.clock_divisor, cpu.cycle);
@@ -146,6 +146,9 @@ double Tile::wakes_at() {
         return HUGE_VAL;
     }
     const uint64_t cycle = chip_.wakes_at();
+    if (cycle <= chip_.cpu().cycle) {
+        return 0;
+    }
     return cycle == avr::kNever ? HUGE_VAL : clock_.to_ticks(cycle);
 }
 

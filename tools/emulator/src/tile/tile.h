@@ -62,7 +62,7 @@ class Tile {
 
   private:
     double bit_ticks(unsigned usart);
-    void execute_until(double end);
+    void execute_until(double end, uint64_t cycle);
     uint16_t stack_floor() const;
     bool lit(avr::PinId pin);
     void note_display();
