@@ -24,6 +24,7 @@ WORTHWHILE_TILE_S = 40.0
 # For a compiler that takes g++'s options.
 FLAGS = (
     *("-std=c++17", "-O2", "-w", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-semantic-interposition"),
+    "-fno-tree-slp-vectorize",
     *("-foptimize-sibling-calls", "-fomit-frame-pointer", "-fno-exceptions"),
     "-fno-asynchronous-unwind-tables",
 )

@@ -41,6 +41,12 @@ uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
     return byte(address);
 }
 
+bool Gpio::reads_as_stored(uint16_t address) const {
+    const bool is_near = address >= kPortsFirst && address < kPortsEnd;
+    const bool is_pin = is_near || (address >= kFarPortsFirst && address < kFarPortsEnd);
+    return !is_pin || (address - (is_near ? kPortsFirst : kFarPortsFirst)) % 3 != 0;
+}
+
 void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
     unsigned which = 0;
     if (address == kPcifr || address == kEifr) {

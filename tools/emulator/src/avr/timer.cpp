@@ -109,32 +109,29 @@ void Timer::advance(uint64_t ticks, uint64_t cycle) {
 }
 
 uint8_t Timer::read(uint16_t address, uint64_t cycle) {
-    const unsigned offset = static_cast<unsigned>(address) - base_;
-    if (offset - first_compare() < (is_wide() ? 6u : 2u)) { // compare registers: time changes nothing there
-        return read_value(offset);
+    if (reads_as_stored(address)) {
+        return byte(address);
     }
     sync(cycle);
     if (address == flag_register_) {
         return counter_.flags;
     }
-    const unsigned first_value = is_wide() ? kWideCount : kNarrowCount;
-    if (address == mask_register_ || address < base_ + first_value) {
-        return byte(address);
-    }
     return read_value(address - base_);
+}
+
+// Compare registers, too: their bytes are stored beside the counter's values.
+bool Timer::reads_as_stored(uint16_t address) const {
+    const unsigned offset = static_cast<unsigned>(address) - base_; // large for those below
+    const bool is_control = offset < (is_wide() ? kWideCount : kNarrowCount);
+    const bool is_compare = offset - first_compare() < (is_wide() ? kWideEnd : kNarrowEnd) - first_compare();
+    return address == mask_register_ || is_control || is_compare;
 }
 
 uint8_t Timer::read_value(unsigned offset) {
     if (!is_wide()) {
-        return static_cast<uint8_t>(offset == kNarrowCount ? counter_.count()
-                                                           : counter_.compare(offset - kNarrowCompare));
+        return static_cast<uint8_t>(counter_.count());
     }
-    const bool high = (offset & 1) != 0;
-    if (offset >= kWideCompare) { // compare registers are read byte by byte, without the shared temporary
-        const uint16_t value = counter_.compare((offset - kWideCompare) / 2);
-        return static_cast<uint8_t>(high ? value >> 8 : value);
-    }
-    if (high) {
+    if ((offset & 1) != 0) {
         return temp_;
     }
     const uint16_t value = offset == kWideCount ? counter_.count() : counter_.capture();
@@ -192,6 +189,11 @@ void Timer::write_value(unsigned offset, uint8_t value) {
 
 void Timer::set_compare(unsigned channel, uint16_t value) {
     counter_.set_compare(channel, value);
+    const auto place = static_cast<uint16_t>(base_ + first_compare() + (is_wide() ? 2 * channel : channel));
+    byte(place) = static_cast<uint8_t>(value);
+    if (is_wide()) {
+        byte(static_cast<uint16_t>(place + 1)) = static_cast<uint8_t>(value >> 8);
+    }
     if (driving_[channel]) {
         gpio_.note_shown(pins_[channel]);
     }

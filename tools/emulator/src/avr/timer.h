@@ -16,6 +16,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
 
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
+    bool reads_as_stored(uint16_t address) const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;

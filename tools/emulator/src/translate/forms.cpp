@@ -158,6 +158,13 @@ std::string reg(unsigned number) {
     return "r" + std::to_string(number);
 }
 
+// Whether an access is no more than one to memory.
+bool is_stored(uint16_t address, uint8_t how, const uint8_t* special) {
+    const bool is_io = address >= avr::kIoStart && address < avr::kSramStart;
+    const bool is_stack_pointer = address == kStackPointer || address == kStackPointer + 1;
+    return is_sram(address) || (is_io && !is_stack_pointer && (special[address] & how) == 0);
+}
+
 } // namespace
 
 Form form_of(const avr::Instruction& in, const uint8_t* special) {
@@ -172,7 +179,8 @@ Form form_of(const avr::Instruction& in, const uint8_t* special) {
     }
     if ((reads && (special[in.k] & avr::kReadsThroughBus) != 0) ||
         (writes && (special[in.k] & avr::kWritesThroughBus) != 0) ||
-        ((in.run == lds || in.run == sts) && !is_sram(in.k))) {
+        (in.run == lds && !is_stored(in.k, avr::kReadsThroughBus, special)) ||
+        (in.run == sts && !is_stored(in.k, avr::kWritesThroughBus, special))) {
         return {};
     }
     return found->second;
