@@ -15,7 +15,7 @@ from tilenca.emulator.translation import Translator
 
 MOST_DELAY_S = 1.0
 # What a cable takes. Tiles run in turns a little shorter than it; docs/EMULATOR.md says why nothing can tell.
-CABLE_DELAY_S = 68e-6
+CABLE_DELAY_S = 260e-6
 
 # A link joins a side of one tile to a side of another: (tile, side, other tile, other side), tiles from 0.
 Link = tuple[int, int, int, int]

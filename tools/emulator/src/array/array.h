@@ -16,7 +16,7 @@ namespace tilenca {
 
 constexpr unsigned kMostTiles = 4096;     // of an array
 constexpr double kQuantumTicks = 256;     // time stands still only at multiples of this
-constexpr double kUsualDelayTicks = 1088; // of a cable: 68 us
+constexpr double kUsualDelayTicks = 4160; // of a cable: 260 us
 constexpr double kLeastDelayTicks = 320, kMostDelayTicks = 4160;
 
 class Array {

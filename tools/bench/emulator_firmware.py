@@ -1,0 +1,136 @@
+"""The emulator's speed on the real firmware, at its own pace of an update every 20 ms.
+
+Processor time, since other load changes it least; the best of a few rounds in which all cases take turns.
+"""
+
+import os
+import random
+import subprocess
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from tilenca.base.errors import BuildError
+from tilenca.emulator import Array
+from tilenca.emulator.translator import make
+from tilenca.emulator.wiring import cables
+from tilenca.shapes.file import Shape
+
+EIGHT = "####\n#..#\n####\n#..#\n####"
+SIZES = {1: (1, 1), 2: (1, 2), 5: (1, 5), 10: (2, 5), 20: (5, 4), 50: (5, 10), 100: (10, 10), 200: (10, 20)}
+PPM = 3000.0
+SWITCHED_ON_S = 0.2
+# Until all tiles run and agree; and what is measured then, of all tiles together.
+WARM_UP_S, MEASURED_TILE_S = 0.6, 12.0
+MEGACYCLES = 32
+
+
+class Case:
+    """Tiles of the firmware in one shape, run again and again in the same way."""
+
+    def __init__(self, elf: Path, grid: str, threads: int = 1, translated: bool = True) -> None:
+        self._elf, self._threads, self._translated = elf, threads, translated
+        self._shape = Shape("8", tuple(grid.split("\n")), "8")
+        self.tiles = len(self._shape.cells)
+        self.cpu_s: list[float] = []  # per emulated second
+        self.wall_s: list[float] = []
+
+    def measure(self) -> None:
+        """Runs it once more."""
+        draw = random.Random(1)
+        ppm = [draw.uniform(-PPM, PPM) for _ in range(self.tiles)]
+        switch_on_s = [draw.uniform(0, SWITCHED_ON_S) for _ in range(self.tiles)]
+        with Array(
+            self._elf, self.tiles, cables(self._shape), ppm, switch_on_s,
+            threads=self._threads, translated=self._translated,
+        ) as array:  # fmt: skip
+            array.run(WARM_UP_S)
+            seconds = max(MEASURED_TILE_S / self.tiles, 0.1)
+            cpu_s, wall_s = time.process_time(), time.perf_counter()
+            array.run(seconds)
+            self.cpu_s.append((time.process_time() - cpu_s) / seconds)
+            self.wall_s.append((time.perf_counter() - wall_s) / seconds)
+
+    @property
+    def cost_s(self) -> float:
+        """Processor seconds per emulated second, at best."""
+        return min(self.cpu_s)
+
+    @property
+    def times_real_time(self) -> float:
+        """Emulated seconds in a second, at best."""
+        return 1 / min(self.wall_s)
+
+
+def block(rows: int, columns: int) -> str:
+    """The drawing of a full block."""
+    return "\n".join(["#" * columns] * rows)
+
+
+def simavr_s(program: Path, elf: Path) -> float:
+    """Processor seconds that libsimavr takes for an emulated second of one tile."""
+    done = subprocess.run(
+        [str(program), str(elf), str(MEGACYCLES)], capture_output=True, check=True, text=True
+    )
+    return 16.0 / float(done.stderr)
+
+
+def measure(rounds: int, elf: Path, simavr: Path | None) -> list[tuple[str, str, str]]:
+    """Name, figure and target; one row per figure."""
+    try:
+        make(elf)
+    except BuildError as error:
+        print(f"bench: {error}; the interpreter is measured twice")
+    twenty = block(*SIZES[20])
+    plain = {"eight": Case(elf, EIGHT, translated=False), "block": Case(elf, twenty, translated=False)}
+    alone = Case(elf, "#", translated=False)
+    fast = {"eight": Case(elf, EIGHT), "block": Case(elf, twenty)}
+    two = {"eight": Case(elf, EIGHT, threads=2), "block": Case(elf, twenty, threads=2)}
+    sized = {count: Case(elf, block(*size)) for count, size in SIZES.items()}
+    theirs = []
+    for _ in range(rounds):
+        for case in (*plain.values(), alone, *fast.values(), *two.values(), *sized.values()):
+            case.measure()
+        if simavr is not None:
+            theirs.append(simavr_s(simavr, elf))
+    return rows(plain, fast, two, alone, sized, theirs)
+
+
+def rows(
+    plain: dict[str, Case], fast: dict[str, Case], two: dict[str, Case], alone: Case,
+    sized: dict[int, Case], theirs: Sequence[float],
+) -> list[tuple[str, str, str]]:  # fmt: skip
+    """The measurements as rows of the table."""
+    one = sized[1].cost_s
+    beside = (
+        f"{min(theirs) / one:.1f} times libsimavr; interpreted {min(theirs) / alone.cost_s:.1f} times"
+        if theirs
+        else "libsimavr is not installed"
+    )
+    found = [("firmware, one tile, one thread", f"{1 / one:.0f} times real time, {beside}", "")]
+    for name, words in (("eight", "sixteen tiles in an 8"), ("block", "twenty tiles in a block")):
+        cost, interpreted = fast[name].cost_s, plain[name].cost_s
+        found.append(
+            (
+                f"firmware, {words}, one thread",
+                f"{1 / cost:.1f} times real time; interpreted {1 / interpreted:.1f} times",
+                "",
+            )
+        )
+        found.append(
+            (
+                f"firmware, {words}, two threads",
+                f"{two[name].times_real_time:.1f} times real time, "
+                f"{min(fast[name].wall_s) / min(two[name].wall_s):.2f} times one thread",
+                "1.7 times one thread",
+            )
+        )
+    for count, case in sized.items():
+        share = case.cost_s / count / one
+        found.append((f"firmware, cost of a tile in a block of {count}", f"{share:.2f} of a lone one's", ""))
+    return found
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
