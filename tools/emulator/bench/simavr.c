@@ -25,7 +25,11 @@ int main(int argc, char** argv) {
     struct timespec from, to;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
     while (avr->cycle < end) {
-        avr_run(avr);
+        const int state = avr_run(avr);
+        if (state == cpu_Done || state == cpu_Crashed) {
+            fprintf(stderr, "stopped at cycle %llu\n", (unsigned long long)avr->cycle);
+            return 1;
+        }
     }
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
     const double seconds = (double)(to.tv_sec - from.tv_sec) + (double)(to.tv_nsec - from.tv_nsec) * 1e-9;
