@@ -20,6 +20,7 @@ from tilenca.commands.arguments import Parser
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "new": ("tilenca.commands.new", "make a project of your own: shapes, firmware, builds"),
+    "shapes": ("tilenca.commands.shapes", "draw and check a shape file, and what its classes may become"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
     "plot": ("tilenca.commands.plot", "draw how training went, or a film of what tiles show"),

@@ -28,7 +28,20 @@ def test_every_row_of_the_metrics_is_one_of_the_table(model: Model, metrics: dic
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         assert cells[:4] == [row["name"], str(row["steps"]), str(row["drawings"]), str(row["runs"])]
         assert float(cells[4]) == pytest.approx(row["share"], abs=5e-5)
-        assert (cells[8].endswith("held") or "missed" in cells[8]) == (row["target"] is not None)
+        assert (cells[11].endswith("held") or "missed" in cells[11]) == (row["target"] is not None)
+
+
+def test_what_the_other_runs_show_and_what_is_possible_at_best_stand_beside_a_row(
+    model: Model, metrics: dict[str, Any]
+) -> None:
+    shares = {"dash": 0.25, "wrong": 0.125, "split": 0.0625, "target": None, "best": 0.61237}
+    row = {**metrics["rows"][0], **shares}
+    [_, line] = [
+        line for line in render_card(model, {**metrics, "rows": [row]}).splitlines() if line.startswith("| ")
+    ]
+    cells = [cell.strip() for cell in line.strip("|").split("|")]
+    assert cells[6:9] == ["0.2500", "0.1250", "0.0625"]
+    assert cells[11] == "at best 0.612"
 
 
 def test_it_says_how_to_make_the_model_again(model: Model, metrics: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tilenca.base import paths
-from tilenca.evaluation.evaluator import CONVERGED_BY, FAULTS, Evaluator, validate
+from tilenca.evaluation.evaluator import CONVERGED_BY, DEAD, FAULTS, Evaluator, validate
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_training_task
@@ -23,15 +23,20 @@ def suite() -> Suite:
 
 
 def test_short_measurements_run_on_the_clocks_only_and_change_everything_at_once(suite: Suite) -> None:
-    suite = replace(suite, sizes=suite.sizes[:1], unknown=suite.unknown[:1], larger=())
+    suite = replace(
+        suite, sizes=suite.sizes[:1], unknown=suite.unknown[:1], damaged=suite.damaged[:1], larger=()
+    )
     short, full = (
         [row.name for row in rows(Evaluator(FastEngine(MODEL), suite, 1, 1))]
         for rows in (Evaluator.short_rows, Evaluator.rows)
     )
     left_out = [name for name in full if name not in short]
     assert {name.split(", ")[-1] for name in left_out} == {
-        "the paper's sampler",
-        "changes to every other class tile by tile",
+        "the paper's listing",
+        "two random halves a step",
+        "a tile every 1 update",
+        "a tile every 15 updates",
+        "a tile every 40 updates",
     }
     assert [name for name in full if name in short] == short
 
@@ -43,10 +48,27 @@ def test_steps_of_a_fault_count_from_its_last_change(suite: Suite) -> None:
         assert row.steps == CONVERGED_BY
         assert row.runs == 3 * row.drawings
     assert rows[-1].share > 0.9, "of these only a tile that was away is there again"
+    assert [row.best is not None for row in rows] == [name == DEAD for name, *_ in FAULTS]
+    assert rows[0].best is not None
+    assert rows[0].low < rows[0].best < 1
+
+
+def test_every_row_about_one_moment_says_what_the_other_runs_show(suite: Suite) -> None:
+    rows = list(Evaluator(FastEngine(MODEL), replace(suite, sizes=()), 3, 1).rows())
+    told = [row for row in rows if row.split is not None]
+    assert {row.key for row in rows if row.split is None} == {"convergence", "longevity"}
+    for row in told:
+        assert row.dash is not None
+        assert row.wrong is not None
+        assert row.split is not None
+        assert row.share + row.dash + row.wrong + row.split == pytest.approx(1, abs=2e-5), row.name
+    assert {row.key for row in told} > {"drawings", "varied", "sizes", "lost", "damaged", "faults", "unknown"}
+    early = [row.split for row in told if row.steps == 10 and row.split is not None]
+    assert max(early) > 0, "after ten steps of the listing some runs are not of one mind yet"
 
 
 def test_every_row_is_told_as_soon_as_it_is_measured(suite: Suite) -> None:
-    only_drawn = replace(suite, sizes=(), damaged=None, unknown=(), larger=())
+    only_drawn = replace(suite, sizes=(), damaged=(), unknown=(), larger=())
     said: list[str] = []
     metrics = validate(FastEngine(MODEL), only_drawn, 1, 1, said.append)
     assert [line.split(", @")[0] for line in said] == [row["name"] for row in metrics["rows"]]

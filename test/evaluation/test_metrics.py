@@ -3,17 +3,20 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from support.measurements import row
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
 from tilenca.evaluation.evaluator import validate
-from tilenca.evaluation.metrics import Target, wilson
-from tilenca.evaluation.suites import Aims, make_suite
+from tilenca.evaluation.metrics import Runs, Target, measure, wilson
+from tilenca.evaluation.suites import Aims, Case, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import load_training_task
+from tilenca.shapes.file import Shape
 from tilenca.simulator.engine import FastEngine
+from tilenca.simulator.simulator import MIXED, Trajectory
 
 
 @pytest.fixture(scope="module")
@@ -42,8 +45,8 @@ def test_a_row_holds_when_its_share_and_its_worst_drawing_reach_the_target() -> 
 
 
 def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> None:
-    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    suite = make_suite(replace(task, labels=model.labels), sizes, model.labels, Aims(10, True, True), 1)
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 1.5, 20)
+    suite = make_suite(replace(task, labels=model.labels), sizes, model.labels, Aims(1.5, True, True), 1)
     said: list[str] = []
     metrics = validate(FastEngine(model), suite, 2, 1, said.append)
     assert metrics == validate(FastEngine(model), suite, 2, 1)
@@ -58,3 +61,36 @@ def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> 
         assert line["name"] in card
     assert model.metadata["command"] in card
     assert "since all targets held" in card
+
+
+def test_a_run_that_is_not_right_is_dash_wrong_or_split() -> None:
+    task, _ = load_training_task([paths.DEFAULT_SHAPES], 1.0, 20)
+    drawings = replace(task, labels=(*task.labels, "-")).chosen([0, 1])
+    dash = 10
+    chosen = np.array([0, 0, 0, 0, 1, 1, 1, 1])
+    answers = np.array([0, 1, dash, MIXED, 1, 1, dash, 0])
+    trajectory = Trajectory((answers == drawings.classes[chosen]).astype(np.float32)[None])
+    runs = Runs(Case("drawn", "some", drawings, 1), chosen, trajectory, {1: answers})
+    found = measure("drawings", "some", runs, 1, None)
+    assert (found.share, found.dash, found.wrong, found.split) == (3 / 8, 2 / 8, 2 / 8, 1 / 8)
+    assert "dash 0.2500, wrong 0.2500, split 0.1250" in found.text()
+    told = measure("drawings", "some", replace(runs, answers={}), 1, None)
+    assert (told.dash, told.wrong, told.split) == (None, None, None)
+    assert "split" not in told.text()
+    nothing = replace(drawings, labels=task.labels)
+    without = measure("drawings", "some", replace(runs, case=replace(runs.case, drawings=nothing)), 1, None)
+    assert without.dash == 0, "a model without a dash never shows one"
+
+
+def test_where_the_dash_is_right_it_is_not_a_miss() -> None:
+    task, _ = load_training_task([paths.DEFAULT_SHAPES], 1.0, 20)
+    none = replace(task, labels=(*task.labels, "-")).of([Shape("-", ("##",), "none")])
+    answers = np.array([10, 10, 3, MIXED])
+    runs = Runs(
+        Case("unknown", "none", none, 1),
+        np.zeros(4, np.int64),
+        Trajectory((answers == 10).astype(np.float32)[None]),
+        {1: answers},
+    )
+    found = measure("unknown", "none", runs, 1, None)
+    assert (found.share, found.dash, found.wrong, found.split) == (0.5, 0, 0.25, 0.25)

@@ -1,10 +1,11 @@
 """What a model is asked: what training never saw, and what it was trained for."""
 
 from tilenca.base import paths
-from tilenca.evaluation.suites import Aims, make_suite
-from tilenca.shapes import variants
+from tilenca.evaluation.suites import Aims, Suite, make_suite
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.stretch import Rows, smallest
+from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, split_of
 from tilenca.training.recipes import RECIPES, aims_of
 
 
@@ -25,7 +26,7 @@ def test_the_exam_asks_for_what_training_never_saw() -> None:
     assert [case.steps for case in held_out] == [60, 100, 100, 100, 100, 200]
     assert len(suite.unknown) == 3
     for case in suite.unknown:
-        assert all(variants.held_out(shape.rows) for shape in case.drawings.shapes)
+        assert all(split_of(shape.rows) == LAST for shape in case.drawings.shapes)
     assert [case.name for case in suite.larger] == ["7x6", "12x10"]
     assert make_suite(task, sizes, task.labels, Aims(), seed=1).unknown == (), (
         "a model that knows no dash is not asked"
@@ -46,6 +47,36 @@ def test_a_model_is_measured_against_what_it_was_trained_for_only() -> None:
     suite = make_suite(task, sizes, task.labels, Aims(stretch=1.5, damaged=False), seed=1)
     aimed = {case.name.split(",")[0]: case.aimed for case in suite.sizes if case.held_out}
     assert aimed == {"8x5": True, "9x7": True, "11x9": False, "13x10": False, "14x12": False, "20x16": False}
-    assert suite.damaged is not None
-    assert not suite.damaged.aimed
+    assert suite.damaged
+    assert not any(case.aimed for case in suite.damaged)
     assert [case.name for case in suite.larger] == ["7x6"]
+
+
+def forms(suite: Suite) -> set[Rows]:
+    cases = [case for case in (*suite.unknown, *suite.damaged) if case.held_out]
+    return {smallest(shape.rows) for case in cases for shape in case.drawings.shapes}
+
+
+def test_measurements_during_training_and_of_the_final_model_have_no_held_out_form_in_common() -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
+    labels, aims = (*task.labels, UNKNOWN), Aims(10.0, True, True)
+    selection, final = (forms(make_suite(task, sizes, labels, aims, 1, split)) for split in (CHOOSING, LAST))
+    assert len(selection) > 300
+    assert len(final) > 300
+    assert selection.isdisjoint(final)
+
+
+def test_a_tile_is_missing_at_every_size_once_in_new_pairs_and_once_in_others() -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
+    suite = make_suite(task, sizes, task.labels, Aims(10.0, damaged=True), seed=1)
+    assert [case.name.split(",")[0] for case in suite.damaged] == [
+        size for size in ("5x4", "6x4", "7x7", "8x6", "12x10") for _ in range(2)
+    ]
+    assert [case.held_out for case in suite.damaged] == [False, True] * 5
+    assert [case.steps for case in suite.damaged[::2]] == [60, 60, 100, 100, 100]
+    assert [case.kind for case in suite.damaged[::2]] == [*["damaged"] * 4, "damaged, large"]
+    for old, new in zip(suite.damaged[::2], suite.damaged[1::2], strict=True):
+        assert old.aimed
+        assert new.aimed
+        assert all(split_of(shape.rows) == TRAINED for shape in old.drawings.shapes)
+        assert all(split_of(shape.rows) == LAST for shape in new.drawings.shapes)

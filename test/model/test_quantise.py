@@ -11,8 +11,9 @@ from tilenca.model.file import LARGEST, SCALES, Dimensions, Model, load_model
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import load_drawings
 from tilenca.simulator import core_library
+from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.simulator.simulator import Simulator
 from tilenca.training.float_engine import FloatEngine
 from tilenca.training.network import TileNet
 

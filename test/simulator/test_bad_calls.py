@@ -28,7 +28,8 @@ class Given:
             "w3": self.array("int8_t", [1] * 8), "b3": self.array("int16_t", [0] * 4),
         }  # fmt: skip
         self.setup_fields: dict[str, Any] = {
-            "runs": 2, "cells": 4, "loss": 2**31, "clocks": 1, "start": 0, "fault": 3, "begin": 1, "end": 2,
+            "runs": 2, "cells": 4, "loss": 2**31, "schedule": 1, "start": 0, "fault": 3, "begin": 1, "end": 2,
+            "changes_count": 2, "changes": self.array("tilenca_change", [(0, 1, 0), (3, 1, 1)]),
             "starts": self.array("int32_t", [0, 2, 4]),
             "neighbours": self.array("int32_t", [4, 1, 4, 4, 4, 4, 4, 0, 4, 3, 4, 4, 4, 4, 4, 2]),
             "alive": self.array("uint8_t", [1] * 4),
@@ -97,10 +98,26 @@ BAD_SETUPS: list[dict[str, Any]] = [
     *({name: number} for name in ("runs", "cells") for number in (-1, -INT_MAX - 1, INT_MAX)),
     *({"starts": starts} for starts in ([0, 2, 3], [1, 2, 4], [0, 5, 4], [0, -1, 4], [0, 2, INT_MAX], None)),
     *({"neighbours": [4, other] + [4] * 14} for other in (-1, 2, 5, INT_MAX, -INT_MAX - 1)),
-    *({name: None} for name in ("neighbours", "alive", "seeds", "first", "period", "latency", "faulty")),
+    *(
+        {name: None}
+        for name in ("neighbours", "alive", "seeds", "first", "period", "latency", "faulty", "changes")
+    ),
     {"loss": 2**32 + 1},
     {"loss": 2**64 - 1},
     *({"fault": fault} for fault in (4, 255)),
+    *({"schedule": schedule} for schedule in (3, 255)),
+    *({"changes_count": count} for count in (-1, -INT_MAX - 1)),
+    *(
+        {"changes": changes}
+        for changes in (
+            [(-1, 1, 0), (3, 1, 1)],
+            [(3, 1, 0), (2, 1, 1)],
+            [(0, -1, 0), (3, 1, 1)],
+            [(0, 4, 0), (3, 1, 1)],
+            [(0, 1, 2), (3, 1, 1)],
+            [(0, 1, 0), (3, 1, -1)],
+        )
+    ),
     *({"faulty": faulty} for faulty in ([2, -1], [-2, -1], [1, 1], [1, 4], [INT_MAX, -1])),
     *({"start": start} for start in (1, UNITS, -1, -UNITS - 1, -(2**62))),
     *({"first": [first] * 4} for first in (2**60, -(2**60))),
@@ -109,7 +126,7 @@ BAD_SETUPS: list[dict[str, Any]] = [
 ]
 KINDS = {
     "starts": "int32_t", "neighbours": "int32_t", "faulty": "int32_t",
-    "first": "int64_t", "period": "int64_t", "latency": "int64_t",
+    "changes": "tilenca_change", "first": "int64_t", "period": "int64_t", "latency": "int64_t",
 }  # fmt: skip
 
 

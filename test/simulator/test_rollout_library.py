@@ -1,8 +1,19 @@
 """The schedule of rollouts, tick by tick; test_simulator.py compares the states with a slow simulator."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 
-from tilenca.simulator.rollout_library import TICKS_PER_STEP, UNITS_PER_STEP, Setup, Tick, TickSchedule, units
+from tilenca.simulator.rollout_library import (
+    SCHEDULES,
+    TICKS_PER_STEP,
+    UNITS_PER_STEP,
+    Setup,
+    Tick,
+    TickSchedule,
+    units,
+)
 
 CELLS, STEPS = 3, 40
 # A line of three tiles from west to east.
@@ -10,11 +21,15 @@ NONE = CELLS
 LINE = np.array([[NONE, 1, NONE, NONE], [NONE, 2, NONE, 0], [NONE, NONE, NONE, 1]])
 
 
-def setup(clocks: bool, loss: float = 0.0, alive: tuple[bool, ...] = (True,) * CELLS) -> Setup:
+def setup(
+    schedule: str, loss: float = 0.0, alive: tuple[bool, ...] = (True,) * CELLS, running: bool = False
+) -> Setup:
+    """A line of tiles that update at half past, the first ones being switched on half a step before 0."""
     half, whole, tenth = (np.full(CELLS, value) for value in (0.5, 1.0, 0.1))
     return Setup(
         np.array([0, CELLS]), LINE, np.array(alive), np.zeros(CELLS, np.int64), np.array([7], np.uint64),
-        loss, True, (half, whole, tenth, 0.0) if clocks else None, "none", np.array([-1]), 0, 0,
+        loss, True, schedule, (half, whole, tenth, -1.0) if schedule == "clock" else None, running,
+        "none", np.array([-1]), 0, 0, np.zeros((0, 3), np.int32),
     )  # fmt: skip
 
 
@@ -24,7 +39,7 @@ def ticks(given: Setup) -> list[Tick]:
     while steps < STEPS:
         found.append(schedule.next())
         steps += found[-1].last
-        assert len(found) <= STEPS * TICKS_PER_STEP
+        assert len(found) <= (STEPS + 1) * TICKS_PER_STEP, "a step more for those switched on before"
     return found
 
 
@@ -40,42 +55,90 @@ def test_times_are_whole_units_to_the_nearest() -> None:
 
 
 def test_on_clocks_each_tile_updates_once_a_step_and_is_heard_after_its_latency() -> None:
-    found = ticks(setup(clocks=True))
+    found = ticks(setup("clock"))
     assert updates(found) == [STEPS] * CELLS
     own = [number for number, tick in enumerate(found) if 0 in tick.updating]
     arrived = [number for number, tick in enumerate(found) if 0 in tick.senders]
     latency = TICKS_PER_STEP // 10
     assert set(np.diff(own)) == {TICKS_PER_STEP}
-    assert arrived == [number + latency for number in own if number + latency < len(found)]
+    sent = [own[0] - TICKS_PER_STEP, *own]  # the seed first
+    assert arrived == [number + latency for number in sent if number + latency < len(found)]
 
 
 def test_a_message_arrives_at_neighbours_only() -> None:
-    for tick in ticks(setup(clocks=True)):
+    for tick in ticks(setup("clock")):
         for cell, sides in zip(tick.senders, tick.arrives, strict=True):
             assert sides.tolist() == (LINE[cell] != NONE).tolist()
 
 
-def test_by_the_papers_sampler_a_step_has_one_update_per_tile_on_average() -> None:
-    found = ticks(setup(clocks=False))
+def test_by_random_halves_a_step_has_one_update_per_tile_on_average() -> None:
+    found = ticks(setup("random"))
     assert 0.6 * STEPS * CELLS < sum(updates(found)) < 1.4 * STEPS * CELLS
 
 
+def test_the_listing_draws_one_tile_after_another_as_many_in_a_step_as_there_are() -> None:
+    found = ticks(setup("listing"))
+    assert sum(updates(found)) == STEPS * CELLS
+    assert max(len(tick.updating) for tick in found) == 1
+    assert len(set(updates(found))) > 1, "with replacement: not every tile is drawn equally often"
+
+
+def test_by_the_listing_neighbours_have_an_update_before_the_next_one() -> None:
+    found = ticks(setup("listing"))
+    for before, after in pairwise(found):
+        assert after.senders.tolist() == before.updating.tolist()
+    assert found[0].senders.tolist() == [0, 1, 2], "and they know the states that all begin with"
+    for last in (tick for tick in found if tick.last):
+        assert not len(last.updating), "the last update of a step arrives within the step"
+
+
+def test_a_tile_sends_its_seed_when_it_is_switched_on_and_updates_a_period_later() -> None:
+    found = ticks(setup("clock"))
+    [born] = [number for number, tick in enumerate(found) if 0 in tick.born]
+    sent = next(number for number, tick in enumerate(found) if 0 in tick.senders)
+    first = next(number for number, tick in enumerate(found) if 0 in tick.updating)
+    assert sent == born + TICKS_PER_STEP // 10, "its latency"
+    assert first == born + TICKS_PER_STEP
+
+
+def test_tiles_that_run_already_are_not_switched_on_and_are_known_at_once() -> None:
+    found = ticks(setup("clock", running=True))
+    assert not any(len(tick.born) for tick in found)
+    assert found[0].senders.tolist() == [0, 1, 2]
+
+
+def test_a_change_switches_tiles_at_the_beginning_of_its_step() -> None:
+    for schedule in SCHEDULES:
+        changes = np.array([[2, 1, 0], [5, 1, 1], [5, 0, 1]], np.int32)
+        found = ticks(replace(setup(schedule, alive=(False, True, True)), changes=changes))
+        starts = [0] + [number + 1 for number, tick in enumerate(found) if tick.last]
+        switched = [
+            (step, sorted(tick.gone.tolist()), sorted(tick.born.tolist()))
+            for step, tick in enumerate(found[start] for start in starts[:STEPS])
+            if len(tick.gone) or (step > 0 and len(tick.born))
+        ]
+        assert switched == [(2, [1], []), (5, [], [0, 1])]
+        there = [any(1 in tick.updating for tick in found[a:b]) for a, b in pairwise(starts)]
+        assert not any(there[2:5])
+        assert any(there[5:])
+
+
 def test_where_all_messages_are_lost_every_side_reads_as_zeros_and_elsewhere_none() -> None:
-    for clocks in (True, False):
-        assert all(tick.absent.all() for tick in ticks(setup(clocks, loss=1.0)))
-        assert not any(tick.absent.any() for tick in ticks(setup(clocks, loss=0.0)))
-        some = np.concatenate([tick.absent.ravel() for tick in ticks(setup(clocks, loss=0.3))])
+    for schedule in SCHEDULES:
+        assert all(tick.absent.all() for tick in ticks(setup(schedule, loss=1.0)))
+        assert not any(tick.absent.any() for tick in ticks(setup(schedule, loss=0.0)))
+        some = np.concatenate([tick.absent.ravel() for tick in ticks(setup(schedule, loss=0.3))])
         assert 0.2 < some.mean() < 0.4
 
 
 def test_a_dead_tile_neither_updates_nor_sends() -> None:
-    found = ticks(setup(clocks=True, alive=(True, False, True)))
+    found = ticks(setup("clock", alive=(True, False, True)))
     assert updates(found) == [STEPS, 0, STEPS]
     assert not any(1 in tick.senders for tick in found)
 
 
 def test_the_same_seed_is_the_same_schedule() -> None:
-    first, again = ticks(setup(clocks=False, loss=0.3)), ticks(setup(clocks=False, loss=0.3))
+    first, again = ticks(setup("random", loss=0.3)), ticks(setup("random", loss=0.3))
     assert len(first) == len(again)
     for one, other in zip(first, again, strict=True):
         for name in ("senders", "arrives", "updating", "absent"):

@@ -1,7 +1,8 @@
 """The compiled simulator: to the bit what a slow one in plain Python does, whatever goes wrong."""
 
 from dataclasses import replace
-from typing import Any
+from itertools import pairwise
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -9,19 +10,24 @@ from numpy.typing import NDArray
 
 from support.reference_network import reference
 from support.reference_simulator import SlowRun
-from support.restless_grids import CONDITIONS, FAULTS, LETTERS, MODEL, TILES, PlainEngine, same, simulator
-from tilenca.shapes.batch import Drawings
-from tilenca.shapes.file import Shape
+from support.restless_grids import (
+    CONDITIONS,
+    FAULTS,
+    LETTERS,
+    MODEL,
+    TILES,
+    PlainEngine,
+    block,
+    same,
+    simulator,
+)
+from tilenca.simulator.conditions import Conditions, Fault, Rebuilding, ScheduleKind
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, Fault, Simulator, Trajectory
+from tilenca.simulator.rollout_library import TICKS_PER_STEP, TickSchedule
+from tilenca.simulator.simulator import MIXED, Simulator, Trajectory
 
 CLASSES = 3
-
-
-def block(rows: int, cols: int) -> Drawings:
-    """One drawing full of tiles."""
-    shape = Shape("0", ("#" * cols,) * rows, "0")
-    return Drawings((shape,), (0,), ("0", "1", "2"), ({"file": "block.toml", "sha256": ""},))
+SCHEDULES: tuple[Any, ...] = get_args(ScheduleKind)
 
 
 def check_against_the_slow_one(rollout: Simulator, steps: int) -> None:
@@ -54,12 +60,8 @@ def test_every_state_and_display_is_that_of_the_slow_simulator(conditions: Condi
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: f"{fault.kind}-{fault.begin}-{fault.end}")
 @pytest.mark.parametrize(
     "conditions",
-    [
-        Conditions(schedule, loss=0.3, lost=lost)
-        for schedule in ("random", "clock")
-        for lost in ("held", "zero")
-    ]
-    + [Conditions("clock", dead=0.2), Conditions("random", dead=0.2)],
+    [Conditions(schedule, loss=0.3, lost=lost) for schedule in SCHEDULES for lost in ("held", "zero")]
+    + [Conditions(schedule, dead=0.2) for schedule in SCHEDULES],
     ids=str,
 )
 def test_with_a_fault_too_it_is_the_slow_simulator(fault: Fault, conditions: Conditions) -> None:
@@ -68,12 +70,12 @@ def test_with_a_fault_too_it_is_the_slow_simulator(fault: Fault, conditions: Con
     check_against_the_slow_one(simulator(conditions, fault, seed=12), 24)
 
 
-@pytest.mark.parametrize("schedule", ["random", "clock"])
+@pytest.mark.parametrize("schedule", SCHEDULES)
 def test_a_run_of_more_tiles_than_a_number_has_bits_is_the_slow_simulator_too(schedule: Any) -> None:
     check_against_the_slow_one(simulator(Conditions(schedule, loss=0.1), runs=1, drawings=block(9, 15)), 4)
 
 
-@pytest.mark.parametrize("schedule", ["random", "clock"])
+@pytest.mark.parametrize("schedule", SCHEDULES)
 def test_the_result_does_not_depend_on_the_number_of_threads(schedule: Any) -> None:
     conditions = Conditions(schedule, loss=0.1)
     fault = Fault("away", np.zeros(3 * 700, np.int64), begin=2, end=4)
@@ -91,7 +93,7 @@ def test_the_same_seed_gives_the_same_life_and_another_one_another() -> None:
 
 def test_a_life_goes_on_where_it_stopped() -> None:
     fault = Fault("away", TILES, begin=8, end=13)
-    for schedule in ("random", "clock"):
+    for schedule in SCHEDULES:
         conditions = Conditions(schedule, loss=0.2)
         whole, parts = simulator(conditions, fault), simulator(conditions, fault)
         right = np.concatenate([parts.run(steps).right for steps in (1, 7, 0, 12)])
@@ -137,6 +139,81 @@ def test_states_to_start_from_are_copied_and_used() -> None:
     assert not np.array_equal(rollouts[0].states, rollouts[2].states)
 
 
+REBUILDINGS = [
+    [(2, 1, 0), (5, 1, 1), (5, 9, 0), (15, 9, 1)],
+    [(0, 0, 0), (0, 9, 0), (9, 0, 1)],
+    [(4, cell, 0) for cell in range(0, 24, 5)] + [(20, cell, 1) for cell in range(0, 24, 5)],
+]
+
+
+def rebuilding(switches: list[tuple[int, int, int]]) -> Rebuilding:
+    """All tiles are there from the start but every seventh, which no change puts down."""
+    present = np.arange(2 * sum(LETTERS.sizes)) % 7 != 6
+    return Rebuilding(present, np.array(switches, np.int32))
+
+
+@pytest.mark.parametrize("switches", REBUILDINGS)
+@pytest.mark.parametrize(
+    "conditions",
+    [Conditions(schedule, loss=loss) for schedule in SCHEDULES for loss in (0.0, 0.3)],
+    ids=str,
+)
+def test_tiles_put_down_and_taken_away_are_as_in_the_slow_simulator(
+    switches: list[tuple[int, int, int]], conditions: Conditions
+) -> None:
+    rollout = simulator(conditions, rebuilding=rebuilding(switches))
+    check_against_the_slow_one(rollout, 24)
+    there = rebuilding(switches).present
+    for _, cell, on in switches:
+        there[cell] = on
+    assert (rollout.counted == there).all()
+    assert (rollout.shown[~there] == -1).all()
+
+
+@pytest.mark.parametrize("schedule", SCHEDULES)
+def test_every_engine_follows_the_same_changes(schedule: Any) -> None:
+    fast, plain = (
+        simulator(Conditions(schedule), engine=engine, rebuilding=rebuilding(REBUILDINGS[2]))
+        for engine in (FastEngine, PlainEngine)
+    )
+    assert same(fast, plain, 26)
+
+
+def test_a_tile_that_was_taken_away_is_heard_for_six_periods_more() -> None:
+    pair = block(1, 2)
+    taken = Rebuilding(np.ones(2, np.bool_), np.array([[10, 1, 0]], np.int32))
+    conditions = Conditions("clock", boot=0.0, drift=0.0, latency=(0.5, 0.5))
+    random = np.random.default_rng(1)
+    rollout = Simulator(FastEngine(MODEL), pair, np.zeros(1, np.int64), conditions, random, rebuilding=taken)
+    schedule = TickSchedule(rollout.setup)
+    ticks = [schedule.next() for _ in range(25 * TICKS_PER_STEP)]
+    # It last sent at 9, which arrived at 9.5; the other one updates at every whole step.
+    absent = [tick.absent[0].any() for tick in ticks if 0 in tick.updating]
+    assert absent == [False] * 15 + [True] * 10
+
+
+def test_the_answer_of_a_run_is_what_all_its_tiles_show() -> None:
+    rollout = simulator(Conditions("clock"), runs=40)
+    assert (rollout.answers() == -1).all(), "all are dark"
+    trajectory = rollout.run(3)
+    answers, shown = rollout.answers(), rollout.shown
+    for run, (start, end) in enumerate(pairwise([*rollout.batch.starts, rollout.cells])):
+        classes = set(shown[start:end].tolist())
+        assert answers[run] == (classes.pop() if len(classes) == 1 else MIXED)
+    targets = rollout.batch.target[rollout.batch.starts]
+    assert ((answers == targets) == trajectory.agreed[-1]).all()
+    assert set(answers.tolist()) > {MIXED, 0}, "runs of two minds and of one"
+
+
+def test_only_counted_tiles_have_a_say_in_the_answer() -> None:
+    for fault in FAULTS:
+        rollout = simulator(Conditions("clock"), fault, runs=2)
+        rollout.run(30)
+        faulty = np.zeros(rollout.cells, np.bool_)
+        faulty[faulty_cells(rollout)] = True
+        assert (rollout.counted == (~faulty | (fault.kind == "away"))).all()
+
+
 def faulty_cells(rollout: Simulator) -> NDArray[np.int64]:
     return rollout.setup.faulty[rollout.setup.faulty >= 0]
 
@@ -148,7 +225,7 @@ def rollout_with(fault: Fault, conditions: Conditions) -> tuple[Simulator, Traje
     return rollout, trajectory
 
 
-@pytest.mark.parametrize("schedule", ["random", "clock"])
+@pytest.mark.parametrize("schedule", SCHEDULES)
 def test_a_tile_that_dies_is_dark_from_then_on_and_not_asked(schedule: Any) -> None:
     rollout, trajectory = rollout_with(Fault("dead", TILES, begin=12), Conditions(schedule))
     shown = trajectory.shown[:, faulty_cells(rollout)]  # type: ignore[index]
@@ -161,7 +238,7 @@ def test_a_tile_that_dies_is_dark_from_then_on_and_not_asked(schedule: Any) -> N
     assert trajectory.right[-1] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("schedule", ["random", "clock"])
+@pytest.mark.parametrize("schedule", SCHEDULES)
 def test_a_stuck_tile_keeps_its_state_and_display(schedule: Any) -> None:
     rollout = simulator(Conditions(schedule), Fault("stuck", TILES, begin=7))
     rollout.run(7)
@@ -174,7 +251,7 @@ def test_a_stuck_tile_keeps_its_state_and_display(schedule: Any) -> None:
     assert moved.sum() > len(stuck)
 
 
-@pytest.mark.parametrize("schedule", ["random", "clock"])
+@pytest.mark.parametrize("schedule", SCHEDULES)
 def test_a_tile_that_was_away_is_dark_and_comes_back_as_the_seed(schedule: Any) -> None:
     rollout = simulator(Conditions(schedule), Fault("away", TILES, begin=6, end=18))
     trajectory = rollout.run(18, record=True)
@@ -183,52 +260,6 @@ def test_a_tile_that_was_away_is_dark_and_comes_back_as_the_seed(schedule: Any) 
     assert (trajectory.right[6:, TILES >= 0] < 1).all(), "a dark tile is not right"
     later = rollout.run(12, record=True)
     assert (later.shown[-1, away] >= 0).all()  # type: ignore[index]
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"loss": 1.5}, "shares"),
-        ({"dead": -0.1}, "shares"),
-        ({"schedule": "often"}, "no such schedule"),
-        ({"lost": "found"}, "no such schedule"),
-        ({"latency": (0.0, 0.5)}, "arrives before"),
-        ({"latency": (0.5, 0.4)}, "arrives before"),
-        ({"drift": 0.2}, "arrives before"),
-        ({"drift": -0.1}, "arrives before"),
-        ({"boot": -1.0}, "arrives before"),
-        ({"boot": float("nan")}, "arrives before"),
-    ],
-)
-def test_conditions_that_make_no_sense_are_refused(settings: dict[str, Any], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        Conditions(**settings)
-
-
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"kind": "tired"},
-        {"kind": "dead", "begin": -1},
-        {"kind": "dead", "end": 4},
-        {"kind": "away"},
-        {"kind": "away", "begin": 4, "end": 4},
-    ],
-)
-def test_faults_that_make_no_sense_are_refused(settings: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match="fault"):
-        Fault(tiles=TILES, **settings)
-
-
-@pytest.mark.parametrize("tiles", [[0, 0], [0, 3, 0, 0, 0, 0], [0, -2, 0, 0, 0, 0], [8, 0, 0, 0, 0, 0]])
-def test_a_fault_of_tiles_that_are_not_there_is_refused(tiles: list[int]) -> None:
-    with pytest.raises(ValueError, match="6 runs need as many tiles"):
-        simulator(Conditions(), Fault("dead", np.array(tiles)))
-
-
-def test_a_run_without_a_tile_that_counts_is_refused() -> None:
-    with pytest.raises(ValueError, match="none is left to count"):
-        simulator(Conditions(), Fault("stuck", np.zeros(1, np.int64)), runs=1, drawings=block(1, 1))
 
 
 def test_states_of_another_shape_are_refused() -> None:

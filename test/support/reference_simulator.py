@@ -81,6 +81,10 @@ class SlowRun:
                 self.on[self.faulty] = False
         self.was_alive = [bool(alive) for alive in setup.alive[begin:end]]
         self.own = [message(state) for state in self.states]
+        self.changes = [
+            (int(at), int(cell - begin), bool(on)) for at, cell, on in setup.changes if begin <= cell < end
+        ]
+        self.sending = [tile for tile in self.tiles if self.on[tile]]
         if setup.clocks:
             first, period, latency, start = setup.clocks
             self.update_at = [Fraction(int(t), UNITS_PER_STEP) for t in units(first[begin:end])]
@@ -88,8 +92,13 @@ class SlowRun:
             self.latency = [Fraction(int(t), UNITS_PER_STEP) for t in units(latency[begin:end])]
             self.arrive_at: list[Fraction | None] = [None for _ in self.tiles]
             self.now = Fraction(int(start))
-        else:
-            self.sending = list(self.tiles)
+            # A tile that runs already has told its neighbours its state; another one is switched on later.
+            self.boot_at: list[Fraction | None] = [None for _ in self.tiles]
+            if not setup.running:
+                for tile in self.sending:
+                    self.boot_at[tile] = self.update_at[tile] - self.period[tile]
+                    self.on[tile] = False
+                self.sending = []
 
     def step(self) -> float:
         """Runs one step; returns the share of tiles that are right after it."""
@@ -97,29 +106,55 @@ class SlowRun:
             until = max(self.now, Fraction(0)) + 1
             while self.now < until:
                 if self.now >= 0 and self.now.denominator == 1:
-                    self._change(int(self.now))
+                    self._begin_step(int(self.now))
                 self.now += Fraction(1, TICKS_PER_STEP)
                 self._tick()
+        elif self.setup.schedule == "listing":
+            self._begin_step(int(self.now))
+            self._listed_step()
+            self.now += 1
         else:
-            self._change(int(self.now))
+            self._begin_step(int(self.now))
             for _ in range(2):
                 self.now += Fraction(1, 2)
                 self._half_step()
         return sum(self.shown[tile] == self.target for tile in self.counted) / len(self.counted)
+
+    def _begin_step(self, step: int) -> None:
+        self._change(step)
+        for at, tile, on in self.changes:
+            if at != step or on == self.on[tile]:
+                continue
+            if on:
+                self._put_down(tile)
+                self.counted.append(tile)
+            else:
+                self.on[tile] = False
+                self.shown[tile] = -1
+                self.counted.remove(tile)
+
+    def _put_down(self, tile: int) -> None:
+        """A tile is switched on: the seed state, no message of anybody, and its own one is on its way."""
+        self._boot(tile)
+        if self.setup.clocks:
+            self.update_at[tile] = self.now + self.period[tile]
+            self.arrive_at[tile] = self.now + self.latency[tile]
+        else:
+            self.sending.append(tile)
+
+    def _boot(self, tile: int) -> None:
+        self.on[tile] = True
+        self.states[tile] = self.seed_state.copy()
+        self.own[tile] = self.message(self.states[tile])
+        for other in self.neighbours[tile]:
+            self.received.pop((other, tile), None)  # type: ignore[arg-type]
 
     def _change(self, step: int) -> None:
         tile, setup = self.faulty, self.setup
         if tile is None or not self.was_alive[tile]:
             return
         if setup.fault == "away" and step == setup.end:
-            self.on[tile] = True
-            self.states[tile] = self.seed_state.copy()
-            self.own[tile] = self.message(self.states[tile])
-            for other in self.neighbours[tile]:
-                self.received.pop((other, tile), None)  # type: ignore[arg-type]
-            if setup.clocks:
-                self.update_at[tile] = self.now + self.period[tile]
-                self.arrive_at[tile] = None
+            self._put_down(tile)
         elif step == setup.begin and step > 0:
             if setup.fault == "stuck":
                 self.stuck[tile] = True
@@ -128,9 +163,20 @@ class SlowRun:
                 self.shown[tile] = -1
 
     def _tick(self) -> None:
+        for tile in self.sending:
+            if self.on[tile]:
+                self._send(tile)
+        self.sending, booted = [], []
+        for tile in self.tiles:
+            boot = self.boot_at[tile]
+            if boot is not None and boot <= self.now:
+                self.boot_at[tile] = None
+                self._boot(tile)
+                self.arrive_at[tile] = boot + self.latency[tile]
+                booted.append(tile)
         for tile in self.tiles:
             arrival = self.arrive_at[tile]
-            if self.on[tile] and arrival is not None and arrival <= self.now:
+            if self.on[tile] and arrival is not None and arrival <= self.now and tile not in booted:
                 self.arrive_at[tile] = None
                 self._send(tile)
         due = [tile for tile in self.tiles if self.on[tile] and self.update_at[tile] <= self.now]
@@ -138,6 +184,21 @@ class SlowRun:
             self._update(tile)
             self.arrive_at[tile] = self.update_at[tile] + self.latency[tile]
             self.update_at[tile] += self.period[tile]
+
+    def _listed_step(self) -> None:
+        # A tile that is not drawn is not silent: its last message still is its state.
+        for tile in self.tiles:
+            for other in self.neighbours[tile]:
+                if self.on[tile] and self.received_at.get((tile, other)) == self.now - 1:  # type: ignore[arg-type]
+                    self.received_at[tile, other] = self.now  # type: ignore[index]
+        for tile in self.sending:
+            self._send(tile)
+        self.sending = []
+        for _ in self.tiles:
+            tile = (next(self.numbers) >> 32) * len(self.tiles) >> 32
+            if self.on[tile]:
+                self._update(tile)
+                self._send(tile)
 
     def _half_step(self) -> None:
         for tile in self.tiles:
@@ -173,6 +234,8 @@ class SlowRun:
             if other is not None and not lost:
                 self.received[tile, other] = self.own[tile]
                 self.received_at[tile, other] = self.now
+            elif other is not None and self.received_at.get((tile, other)) == self.now:
+                self.received_at[tile, other] -= 1  # what it has is no longer the last message
 
     def _update(self, tile: int) -> None:
         if self.stuck[tile]:
@@ -189,5 +252,6 @@ class SlowRun:
         self.shown[tile] = int(np.argmax(self.states[tile][-self.classes :]))
 
     def _silent(self, sender: int, receiver: int) -> bool:
-        tracked = self.setup.fault != "none" or (self.setup.loss > 0 and not self.setup.zeros)
+        held = self.setup.loss > 0 and not self.setup.zeros
+        tracked = self.setup.fault != "none" or len(self.setup.changes) > 0 or held
         return tracked and self.now - self.received_at.get((sender, receiver), NEVER) > SILENT_PERIODS

@@ -10,8 +10,9 @@ from support.reference_network import reference
 from tilenca.model.file import Dimensions, Model
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
+from tilenca.simulator.conditions import Conditions, Fault, Rebuilding
 from tilenca.simulator.engine import ExactEngine, FastEngine, States
-from tilenca.simulator.simulator import Conditions, Fault, Simulator
+from tilenca.simulator.simulator import Simulator
 
 CHANNELS = 6
 
@@ -46,6 +47,12 @@ LETTERS = Drawings(
 )  # fmt: skip
 
 
+def block(rows: int, cols: int) -> Drawings:
+    """One drawing full of tiles."""
+    shape = Shape("0", ("#" * cols,) * rows, "0")
+    return Drawings((shape,), (0,), ("0", "1", "2"), ({"file": "block.toml", "sha256": ""},))
+
+
 class PlainEngine(ExactEngine):
     """The arithmetic in numpy, so that `Simulator` goes round by round."""
 
@@ -61,11 +68,14 @@ def simulator(
     engine: Any = FastEngine,
     seed: int = 11,
     threads: int | None = 1,
+    rebuilding: Rebuilding | None = None,
 ) -> Simulator:
     chosen = np.tile(np.arange(len(drawings)), runs)
     random = np.random.default_rng(seed)
     conditions = replace(conditions, fault=fault)
-    return Simulator(engine(MODEL), drawings, chosen, conditions, random, threads=threads)
+    return Simulator(
+        engine(MODEL), drawings, chosen, conditions, random, threads=threads, rebuilding=rebuilding
+    )
 
 
 CONDITIONS = [
@@ -73,6 +83,10 @@ CONDITIONS = [
     Conditions("random", loss=0.3, dead=0.1),
     Conditions("random", loss=0.9),
     Conditions("random", loss=0.2, lost="zero"),
+    Conditions("listing"),
+    Conditions("listing", loss=0.3, dead=0.1),
+    Conditions("listing", loss=0.9),
+    Conditions("listing", loss=0.2, lost="zero"),
     Conditions("clock"),
     Conditions("clock", loss=0.3, dead=0.1),
     Conditions("clock", loss=0.9, boot=0.0),

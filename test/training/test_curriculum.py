@@ -6,44 +6,78 @@ import numpy as np
 import pytest
 
 from tilenca.base import paths
-from tilenca.evaluation.suites import make_suite
-from tilenca.shapes import variants
-from tilenca.shapes.batch import load_training_task
+from tilenca.shapes.batch import UNLABELLED, load_training_task
 from tilenca.shapes.file import UNKNOWN
-from tilenca.training.curriculum import build, labels_of
-from tilenca.training.recipes import RECIPES, aims_of
+from tilenca.shapes.variant import TRAINED, split_of
+from tilenca.training.curriculum import DRAWN, STRETCHED, Curriculum, build, labels_of
+from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED
+from tilenca.training.recipes import RECIPES, Recipe
 
-FULL = replace(RECIPES["full"], stretch=1.5)
+FULL = replace(RECIPES["full"], stretch=1.5, library=600)
+
+
+def curriculum(seed: int, recipe: Recipe = FULL) -> Curriculum:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], recipe.stretch, 20)
+    task = replace(task, labels=labels_of(task, recipe, 20))
+    return build(task, recipe, sizes, np.random.default_rng(seed))
 
 
 def test_the_curriculum_has_every_kind_in_its_share_and_nothing_held_out() -> None:
-    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    task = replace(task, labels=labels_of(task, FULL, 20))
-    curriculum = build(task, FULL, sizes, np.random.default_rng(1))
-    shapes, weights = curriculum.drawings.shapes, curriculum.weights
+    found = curriculum(1)
+    shapes, weights = found.drawings.shapes, found.weights
     assert weights.sum() == pytest.approx(1)
-    unknown = np.array([shape.label == UNKNOWN for shape in shapes])
-    damaged = np.array([shape.name.endswith("damaged") for shape in shapes])
-    assert weights[unknown].sum() == pytest.approx(FULL.unknown)
-    assert weights[damaged].sum() == pytest.approx(FULL.damaged)
-    assert {shape.label for shape in shapes} == {*"0123456789", UNKNOWN}
-    assert not any(variants.held_out(shape.rows) for shape, none in zip(shapes, unknown, strict=True) if none)
-    asked = make_suite(task, sizes, task.labels, aims_of(FULL), seed=1)
-    new = {s.rows for case in (*asked.sizes, *asked.unknown) if case.held_out for s in case.drawings.shapes}
-    assert new.isdisjoint(shape.rows for shape in shapes)
-    drawn = {(len(shape.rows), len(shape.rows[0])) for shape in shapes if shape.label == "8"}
-    assert (7, 6) in drawn
-    assert not drawn & set(sizes.held_out)
-    assert max(rows for rows, _ in drawn) <= 1.5 * 5, "the recipe stretches half as much again at most"
+    for kind, share in (
+        (STRETCHED, FULL.stretched),
+        (VARIED, FULL.varied),
+        (DAMAGED, FULL.damaged),
+        (OF_NO_CLASS, FULL.unknown),
+        (FREE, FULL.unlabelled),
+    ):
+        assert weights[found.kinds == kind].sum() == pytest.approx(share), kind
+    assert found.renewable.sum() == pytest.approx(FULL.library, abs=5)
+    assert {shape.label for shape in shapes} == {*"0123456789", UNKNOWN, UNLABELLED}
+    files = {
+        shape.rows for shape, kind in zip(shapes, found.kinds, strict=True) if kind in (DRAWN, STRETCHED)
+    }
+    assert all(split_of(shape.rows) == TRAINED for shape in shapes if shape.rows not in files)
+    _, sizes = load_training_task([paths.DEFAULT_SHAPES], FULL.stretch, 20)
+    varied = {
+        (len(shape.rows), len(shape.rows[0]))
+        for shape, whole in zip(shapes, found.whole, strict=True)
+        if whole
+    }
+    assert not varied & set(sizes.held_out)
+    stretched = [len(shape.rows) for shape, k in zip(shapes, found.kinds, strict=True) if k == STRETCHED]
+    assert 1.5 * 5 - 1 < max(stretched) <= 1.5 * 5, "the recipe stretches half as much again at most"
+
+
+def test_some_drawings_are_renewed_and_the_others_stay() -> None:
+    before = curriculum(1)
+    places = np.flatnonzero(before.renewable)[::3]
+    after = before.renewed(places, np.random.default_rng(3))
+    same = [a == b for a, b in zip(before.drawings.shapes, after.drawings.shapes, strict=True)]
+    assert all(same[place] for place in range(len(same)) if place not in set(places.tolist()))
+    assert not any(same[place] for place in places[:100])
+    fresh = replace(after.drawings)  # nothing is cached in a copy
+    for name in ("sizes", "classes", "extents"):
+        assert (getattr(after.drawings, name) == getattr(fresh, name)).all()
+    most = fresh.tables.shape[1]
+    assert (after.drawings.tables[:, :most] == fresh.tables).all()
+    assert (after.drawings.tables[:, most:] == -1).all()
+    assert after.failing.max() < after.records
+    assert (after.failing[~after.renewable] == before.failing[~before.renewable]).all()
+
+
+def test_a_task_without_variants_or_other_kinds_consists_of_its_drawings() -> None:
+    quiet = replace(FULL, varied=0.0, damaged=0.0, unknown=0.0, unlabelled=0.0, stretched=0.0)
+    found = curriculum(1, quiet)
+    assert found.generator is None
+    assert {*found.kinds} == {DRAWN}
+    assert found.renewed(np.array([1, 2]), np.random.default_rng(1)) is found
 
 
 def test_the_same_seed_draws_the_same_curriculum() -> None:
-    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)
-    task = replace(task, labels=labels_of(task, FULL, 20))
-    one, same, other = (
-        [s.rows for s in build(task, FULL, sizes, np.random.default_rng(seed)).drawings.shapes]
-        for seed in (1, 1, 2)
-    )
+    one, same, other = ([s.rows for s in curriculum(seed).drawings.shapes] for seed in (1, 1, 2))
     assert one == same
     assert one != other
 

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
 
-from tilenca.training.loss import Goal, loss_of, scores_of
+from tilenca.shapes.batch import NO_CLASS
+from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
 
 # Three cells of a hidden channel and two scores: the first is perfect, the second undecided, the third wrong.
 END = torch.tensor([[0.5, 1.0, 0.0], [0.0, 0.5, 0.5], [0.0, 1.0, 0.0]])
@@ -39,3 +41,12 @@ def test_the_gradient_reaches_only_the_end_of_the_rollout() -> None:
     assert end.grad is not None
     # Of the hidden channel only the stability penalty of the first cell has a gradient: 4 * 2 * 0.5 / 3.
     assert end.grad[:, 0].tolist() == pytest.approx([4 / 3, 0.0, 0.0])
+
+
+def test_tiles_of_an_unlabelled_grid_are_pulled_to_the_class_that_they_favour_together() -> None:
+    scores = torch.tensor([[0.9, 0.2], [0.0, 0.5], [0.1, 0.8], [0.2, 0.3]])
+    target = torch.tensor([1, NO_CLASS, NO_CLASS, NO_CLASS])
+    starts = np.array([0, 1])
+    assert agreed_targets(scores, target, starts).tolist() == [1, 1, 1, 1]
+    assert agreed_targets(scores, target[:1].repeat(4), starts).tolist() == [1, 1, 1, 1]
+    assert agreed_targets(scores.flip(1), target, starts).tolist() == [1, 0, 0, 0]

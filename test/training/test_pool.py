@@ -5,8 +5,8 @@ import numpy as np
 from support.training import SMOKE, trainer
 from tilenca.base import paths
 from tilenca.shapes.batch import load_drawings
-from tilenca.training.curriculum import Curriculum
-from tilenca.training.pool import Pools
+from tilenca.training.curriculum import DRAWN, Curriculum
+from tilenca.training.pool import CONVERGED_AFTER, PATIENCE, Pools
 
 
 def test_pools_hold_states_of_their_drawings_only() -> None:
@@ -14,7 +14,7 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
     for _ in range(30):
         learner.step()
     for pool in (learner.pools.perturbed, learner.pools.undisturbed):
-        sizes = learner.drawings.sizes[pool.drawing]
+        sizes = learner.pools.drawings.sizes[pool.drawing]
         for states, size in zip(pool.states, sizes, strict=True):
             assert not states[size:].any()
         assert np.abs(pool.states).max() <= 127 / 64
@@ -22,7 +22,8 @@ def test_pools_hold_states_of_their_drawings_only() -> None:
 
 def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
     drawings = load_drawings([paths.DEFAULT_SHAPES])
-    even = Curriculum(drawings, np.full(len(drawings), 1 / len(drawings)), np.ones(len(drawings), np.bool_))
+    some = len(drawings)
+    even = Curriculum(drawings, np.full(some, DRAWN), np.full(some, 1 / some), np.arange(some))
     pools = Pools(SMOKE, even, 21, np.random.default_rng(1))
     four, nine = 4, 9  # every tile of the "4" is a tile of the "9"
     kept, all_of_nine = int(drawings.sizes[four]), int(drawings.sizes[nine])
@@ -37,3 +38,30 @@ def test_rebuilt_tissues_keep_the_states_of_tiles_that_stay() -> None:
     assert (pools.perturbed.states[0, :all_of_nine, 3] == 0.25).sum() == kept
     assert (pools.perturbed.states[0, :all_of_nine, 0] == 1.0).sum() == all_of_nine - kept
     assert not pools.perturbed.states[0, all_of_nine:].any()
+
+
+def test_a_grid_that_does_not_agree_is_left_alone_until_it_does_or_time_is_up() -> None:
+    learner = trainer()
+    pools = learner.pools
+    count = SMOKE.batch - SMOKE.undisturbed_batch
+    disturbed = sum(round(share * count) for share in (SMOKE.reset, SMOKE.switch, SMOKE.state_shuffle))
+    wrong = np.arange(len(pools.perturbed.age)) % 3 == 0
+    for _ in range(20):
+        pools.perturbed.wrong[:] = wrong
+        pools.perturbed.age[:] = 200
+        taken = pools.take(0.5).perturbed
+        others = int((~wrong[taken]).sum())
+        assert (pools.perturbed.age[taken] == 0).sum() == disturbed
+        assert (pools.perturbed.age[taken[wrong[taken]]] == 0).sum() == max(0, disturbed - others)
+    pools.perturbed.wrong[:], pools.perturbed.age[:] = True, PATIENCE
+    assert (pools.perturbed.age[pools.take(0.5).perturbed] == 0).sum() == disturbed, "time is up"
+
+
+def test_whether_a_grid_agrees_is_noted_only_after_it_had_time() -> None:
+    learner = trainer()
+    learner.step()
+    assert not learner.pools.perturbed.wrong.any(), "all began a moment ago"
+    for _ in range(15):
+        learner.step()
+    assert learner.pools.perturbed.wrong.any()
+    assert (learner.pools.perturbed.age[learner.pools.perturbed.wrong] >= CONVERGED_AFTER).all()

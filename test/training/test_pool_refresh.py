@@ -1,7 +1,7 @@
 """The undisturbed pool runs on with the EMA weights, as in the fast simulator, and nothing else changes."""
 
 from copy import deepcopy
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -15,7 +15,13 @@ from tilenca.simulator.simulator import Simulator
 from tilenca.training.curriculum import build
 from tilenca.training.network import initial_arrays
 from tilenca.training.pool import CONVERGED_AFTER, Pool, Pools
-from tilenca.training.pool_refresh import CLOCKS, MOST_HARD_EXAMPLES, mine_hard_examples, refresh_undisturbed
+from tilenca.training.pool_refresh import (
+    CLOCKS,
+    MOST_HARD_EXAMPLES,
+    REFRESHED,
+    mine_hard_examples,
+    refresh_undisturbed,
+)
 from tilenca.training.recipes import RECIPES
 
 MODEL = load_model(paths.MODELS / "digits")
@@ -23,7 +29,7 @@ MODEL = load_model(paths.MODELS / "digits")
 
 @pytest.fixture(scope="module")
 def pools() -> Pools:
-    recipe = replace(RECIPES["smoke"], unknown=0.0, damaged=0.0)
+    recipe = replace(RECIPES["smoke"], unknown=0.0, damaged=0.0, varied=0.0, unlabelled=0.0)
     task, sizes = load_training_task([paths.DEFAULT_SHAPES], recipe.stretch, 20)
     task = replace(task, labels=MODEL.labels)
     random = np.random.default_rng(1)
@@ -51,10 +57,20 @@ def test_states_go_through_integers_and_back_unharmed(pools: Pools) -> None:
     old = refreshed(pools, pools.undisturbed, (40, 40))
     random = np.random.default_rng(3)
     random.uniform()  # the number of steps
-    simulator = Simulator(FastEngine(MODEL), pools.drawings, old.drawing, CLOCKS, random)
+    order = random.permutation(len(old.drawing))
+    engine = FastEngine(MODEL)
+    seeds = engine.seed(int(pools.drawings.sizes[old.drawing].sum()))
+    simulator = Simulator(engine, pools.drawings, old.drawing[order], CLOCKS, random, seeds)
     simulator.run(40)
     batch = simulator.batch
-    assert np.array_equal(old.states[batch.sample, batch.place] * 8192, simulator.states)
+    assert np.array_equal(old.states[order[batch.sample], batch.place] * 8192, simulator.states)
+
+
+def test_only_some_grids_of_a_large_pool_run_at_once(pools: Pools) -> None:
+    several = -(-2 * REFRESHED // len(pools.undisturbed.age))
+    large = Pool(*(np.concatenate([getattr(pools.undisturbed, f.name)] * several) for f in fields(Pool)))
+    old = refreshed(pools, large, (5, 5))
+    assert (old.age != large.age).sum() == REFRESHED
 
 
 def test_the_number_of_steps_is_drawn_and_the_same_seed_draws_the_same(pools: Pools) -> None:

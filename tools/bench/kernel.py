@@ -24,8 +24,9 @@ from tilenca.emulator import Array
 from tilenca.model import cost, packing
 from tilenca.model.file import Dimensions, Model, load_model
 from tilenca.shapes.batch import load_drawings
+from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.simulator.simulator import Simulator
 
 BEGIN, END = "<!-- kernel: made by `make bench`, do not edit -->", "<!-- /kernel -->"
 WIDTHS = (40, 64, 96)

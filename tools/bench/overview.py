@@ -14,8 +14,9 @@ from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import load_task
 from tilenca.simulator import core_library
+from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.simulator.simulator import Simulator
 
 SHAPE = "8"  # of the paper's digits the one with the most tiles
 SEED = 0

@@ -31,9 +31,9 @@ ROWS = {
     "20x16 @200": ("20x16, never trained on", 200),
     "changes": ("changes to every other class at once", 60),
     "half of the messages lost": ("50 % of the messages lost, last one held", 60),
-    "one tile missing": ("one tile missing, where that leaves no doubt about the class", 60),
-    "random drawings": ("random drawings, never trained on", 60),
-    "other strokes": ("other choices of the same strokes, never trained on", 60),
+    "one tile missing": ("one tile missing, new pairs", 60),
+    "random drawings": ("random drawings, forms never trained on", 60),
+    "other strokes": ("other choices of the same strokes, forms never trained on", 60),
 }
 
 

@@ -72,8 +72,8 @@ int tilenca_simulator_abi_version(void) {
 }
 
 size_t tilenca_simulator_size_of(const char* structure) {
-    const Size all[] = {TILENCA_SIZE(tilenca_model), TILENCA_SIZE(tilenca_setup), TILENCA_SIZE(tilenca_event),
-                        TILENCA_SIZE(tilenca_tick)};
+    const Size all[] = {TILENCA_SIZE(tilenca_model), TILENCA_SIZE(tilenca_change),
+                        TILENCA_SIZE(tilenca_setup), TILENCA_SIZE(tilenca_event), TILENCA_SIZE(tilenca_tick)};
     return size_among(all, structure);
 }
 

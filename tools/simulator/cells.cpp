@@ -20,6 +20,12 @@ void Cells::apply(const Tick& tick, const Links& links, Display& display) {
     for (int32_t cell : tick.switched_off) {
         display.show(cell, kDark);
     }
+    for (int32_t cell : tick.taken_away) {
+        display.count(cell, false);
+    }
+    for (int32_t cell : tick.put_down) {
+        display.count(cell, true);
+    }
     for (int32_t cell : tick.switched_on) {
         switch_on(cell);
     }

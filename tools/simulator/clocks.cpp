@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/link.h"
+
 namespace tilenca {
 
 namespace {
@@ -18,12 +20,25 @@ int32_t tick_of(int64_t units) {
 } // namespace
 
 Clocks::Clocks(const tilenca_setup& setup, int first, int last)
-    : Schedule(setup, first, last, kTicks, tick_of(setup.start)), period_(setup.period + setup.starts[first]),
-      latency_(setup.latency + setup.starts[first]), sending_(on_.size()), now_due_(on_.size()) {
+    : Schedule(setup, first, last, kTicks, tick_of(setup.start), kSilentPeriods * kTicks),
+      period_(setup.period + setup.starts[first]), latency_(setup.latency + setup.starts[first]),
+      next_(on_.size(), Next::Update), now_due_(on_.size()) {
     const int64_t* updates = setup.first + setup.starts[first];
     for (int cell = 0; cell < cells(); ++cell) {
         next_update_.push_back(updates[cell]);
-        due_.push_back(on_[cell] ? std::max(tick_of(updates[cell]), now_ + 1) : kNever);
+        due_.push_back(kNever);
+        if (!on_[cell]) {
+            continue;
+        }
+        int64_t begins = updates[cell];
+        if (setup.running) {
+            running_.push_back(cell);
+        } else {
+            begins -= period_[cell];
+            next_[cell] = Next::Boot;
+            on_[cell] = 0;
+        }
+        due_[cell] = std::max(tick_of(begins), now_ + 1);
     }
 }
 
@@ -34,11 +49,21 @@ void Clocks::plan(Tick& tick) {
         now_due_[due] = cell;
         due += due_[cell] == now_;
     }
+    for (int32_t cell : running_) {
+        if (on_[cell]) {
+            tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), now_)});
+        }
+    }
+    running_.clear();
     for (int i = 0; i < due; ++i) {
         const int cell = now_due_[i];
-        if (sending_[cell]) {
+        if (next_[cell] == Next::Boot) {
+            on_[cell] = 1;
+            tick.switched_on.push_back(cell);
+            boot(cell, next_update_[cell] - period_[cell]);
+        } else if (next_[cell] == Next::Arrival) {
             tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), now_)});
-            sending_[cell] = 0;
+            next_[cell] = Next::Update;
             due_[cell] = std::max(tick_of(next_update_[cell]), now_);
         }
     }
@@ -53,7 +78,7 @@ void Clocks::update(int cell, Tick& tick) {
     if (!stuck_[cell]) {
         tick.updates.push_back({cell, links_.absent(cell, random_of(cell), now_)});
     }
-    sending_[cell] = 1;
+    next_[cell] = Next::Arrival;
     due_[cell] = std::max(tick_of(next_update_[cell] + latency_[cell]), now_ + 1);
     next_update_[cell] += period_[cell];
 }
@@ -63,9 +88,14 @@ void Clocks::switch_off(int cell) {
 }
 
 void Clocks::switch_on(int cell) {
-    sending_[cell] = 0;
-    next_update_[cell] = now_ * kUnits + period_[cell];
-    due_[cell] = tick_of(next_update_[cell]);
+    boot(cell, now_ * kUnits);
+}
+
+// Switched on at a time, in units: its seed state is on its way, and its first update is one period later.
+void Clocks::boot(int cell, int64_t at) {
+    next_[cell] = Next::Arrival;
+    due_[cell] = std::max(tick_of(at + latency_[cell]), now_ + 1);
+    next_update_[cell] = at + period_[cell];
 }
 
 } // namespace tilenca

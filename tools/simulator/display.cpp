@@ -16,7 +16,8 @@ Display::Display(const tilenca_setup& setup, int first, int last, const Schedule
 
 void Display::shares(float* shares) const {
     for (size_t run = 0; run < right_.size(); ++run) {
-        shares[run] = static_cast<float>(right_[run]) / static_cast<float>(total_[run]);
+        shares[run] =
+            total_[run] == 0 ? 0 : static_cast<float>(right_[run]) / static_cast<float>(total_[run]);
     }
 }
 

@@ -25,6 +25,14 @@ class Display {
         shown_[cell] = what;
     }
 
+    // The cell counts from now on, or no more.
+    void count(int cell, bool counts) {
+        const int sign = int{counts} - int{counted_[cell]};
+        total_[run_[cell]] += sign;
+        right_[run_[cell]] += sign * (shown_[cell] == target_[cell]);
+        counted_[cell] = counts;
+    }
+
     // For every run the share of tiles that are right, of those asked.
     void shares(float* shares) const;
 

@@ -16,7 +16,8 @@ constexpr int opposite_of(int side) {
 
 Links::Links(const tilenca_setup& setup, int first, int last, int silent_after)
     : loss_(setup.loss), zeros_(setup.zeros != 0),
-      tracks_silence_(setup.fault != TILENCA_FAULT_NONE || (setup.loss > 0 && setup.zeros == 0)),
+      tracks_silence_(setup.fault != TILENCA_FAULT_NONE || setup.changes_count > 0 ||
+                      (setup.loss > 0 && setup.zeros == 0)),
       silent_after_(silent_after) {
     const int32_t begin = setup.starts[first], end = setup.starts[last];
     for (int32_t i = begin * kSides; i < end * kSides; ++i) {
@@ -41,8 +42,10 @@ Sides Links::send(int cell, Random& random, int now) {
     for (int side = 0; side < kSides; ++side) {
         if (neighbour(cell, side) < 0) {
             sides &= static_cast<Sides>(~(1 << side));
-        } else if (tracks_silence_ && (sides >> side & 1)) {
-            arrived_[cell * kSides + side] = now;
+        } else if (tracks_silence_) {
+            int32_t& arrived = arrived_[cell * kSides + side];
+            // What is lost takes back what renew() said: the message that arrived is no longer the last one.
+            arrived = sides >> side & 1 ? now : arrived - (arrived == now);
         }
     }
     return sides & 0xF;

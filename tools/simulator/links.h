@@ -15,7 +15,8 @@ using Sides = uint8_t; // bit s: side s
 
 class Links {
   public:
-    // Of the runs [first, last) of the setup. A side is silent when nothing came for `silent_after` ticks.
+    // Of the runs [first, last) of the setup. A side is silent when nothing came for `silent_after`.
+    // Times are in a unit of the caller's, ticks or steps.
     Links(const tilenca_setup& setup, int first, int last, int silent_after);
 
     // -1 for none.
@@ -24,8 +25,8 @@ class Links {
     // Sends the cell's message; the sides on which it arrives.
     Sides send(int cell, Random& random, int now);
 
-    // The cell would send again what it sent last: sides where its message arrived a tick ago are not silent
-    // now.
+    // The cell would send again what it sent last: sides where its message arrived a unit of time ago are not
+    // silent now.
     void renew(int cell, int now);
 
     // The sides whose message the cell reads as zeros.
@@ -38,7 +39,7 @@ class Links {
     Sides lost(Random& random) const;
 
     std::vector<int32_t> neighbours_;
-    std::vector<int32_t> arrived_; // [cell][side], the tick when the cell's message last arrived there
+    std::vector<int32_t> arrived_; // [cell][side], when the cell's message last arrived there
     uint64_t loss_;
     bool zeros_;
     bool tracks_silence_;

@@ -1,14 +1,14 @@
 #include "schedule.h"
 
 #include "clocks.h"
-#include "core/link.h"
-#include "sampler.h"
+#include "halves.h"
+#include "listing.h"
 
 namespace tilenca {
 
-Schedule::Schedule(const tilenca_setup& setup, int first, int last, int ticks, int start)
-    : now_(start), links_(setup, first, last, kSilentPeriods * ticks), setup_(setup), first_(first),
-      last_(last), ticks_(ticks) {
+Schedule::Schedule(const tilenca_setup& setup, int first, int last, int ticks, int start, int silent_after)
+    : now_(start), links_(setup, first, last, silent_after), setup_(setup), first_(first), last_(last),
+      ticks_(ticks) {
     const int32_t begin = setup.starts[first], end = setup.starts[last];
     on_.assign(setup.alive + begin, setup.alive + end);
     counts_ = on_;
@@ -27,6 +27,12 @@ Schedule::Schedule(const tilenca_setup& setup, int first, int last, int ticks, i
         }
     }
     starts_.push_back(end - begin);
+    for (int32_t i = 0; i < setup.changes_count; ++i) {
+        const tilenca_change& change = setup.changes[i];
+        if (change.cell >= begin && change.cell < end) {
+            changes_.push_back({change.step, change.cell - begin, change.on});
+        }
+    }
 }
 
 bool Schedule::next(Tick& tick) {
@@ -34,15 +40,20 @@ bool Schedule::next(Tick& tick) {
     tick.switched_on.clear();
     tick.deliveries.clear();
     tick.updates.clear();
-    if (now_ >= 0 && now_ % ticks_ == 0 && setup_.fault != TILENCA_FAULT_NONE) {
-        begin_step(tick, now_ / ticks_);
+    tick.put_down.clear();
+    tick.taken_away.clear();
+    if (now_ >= 0 && now_ % ticks_ == 0) {
+        if (setup_.fault != TILENCA_FAULT_NONE) {
+            begin_fault(tick, now_ / ticks_);
+        }
+        change(tick, now_ / ticks_);
     }
     ++now_;
     plan(tick);
     return now_ > 0 && now_ % ticks_ == 0;
 }
 
-void Schedule::begin_step(Tick& tick, int64_t step) {
+void Schedule::begin_fault(Tick& tick, int64_t step) {
     const bool back = setup_.fault == TILENCA_FAULT_AWAY && step == setup_.end;
     if (!back && (step != setup_.begin || step == 0)) {
         return;
@@ -52,25 +63,47 @@ void Schedule::begin_step(Tick& tick, int64_t step) {
         if (setup_.faulty[run] < 0 || !setup_.alive[setup_.faulty[run]]) {
             continue;
         }
-        if (back) {
-            on_[cell] = 1;
-            switch_on(cell);
-            tick.switched_on.push_back(cell);
-        } else if (setup_.fault == TILENCA_FAULT_STUCK) {
+        if (!back && setup_.fault == TILENCA_FAULT_STUCK) {
             stuck_[cell] = 1;
         } else {
-            on_[cell] = 0;
-            switch_off(cell);
-            tick.switched_off.push_back(cell);
+            power(cell, back, tick);
         }
     }
 }
 
-std::unique_ptr<Schedule> make_schedule(const tilenca_setup& setup, int first, int last) {
-    if (setup.clocks) {
-        return std::make_unique<Clocks>(setup, first, last);
+void Schedule::change(Tick& tick, int64_t step) {
+    for (; next_change_ < changes_.size() && changes_[next_change_].step <= step; ++next_change_) {
+        const int cell = changes_[next_change_].cell;
+        const bool on = changes_[next_change_].on != 0;
+        if (on_[cell] == on) {
+            continue;
+        }
+        power(cell, on, tick);
+        counts_[cell] = on;
+        (on ? tick.put_down : tick.taken_away).push_back(cell);
     }
-    return std::make_unique<Sampler>(setup, first, last);
+}
+
+void Schedule::power(int cell, bool on, Tick& tick) {
+    on_[cell] = on;
+    if (on) {
+        switch_on(cell);
+        tick.switched_on.push_back(cell);
+    } else {
+        switch_off(cell);
+        tick.switched_off.push_back(cell);
+    }
+}
+
+std::unique_ptr<Schedule> make_schedule(const tilenca_setup& setup, int first, int last) {
+    switch (setup.schedule) {
+    case TILENCA_SCHEDULE_CLOCKS:
+        return std::make_unique<Clocks>(setup, first, last);
+    case TILENCA_SCHEDULE_LISTING:
+        return std::make_unique<Listing>(setup, first, last);
+    default:
+        return std::make_unique<Halves>(setup, first, last);
+    }
 }
 
 } // namespace tilenca

@@ -25,9 +25,12 @@ void check_arrays(const tilenca_setup& setup) {
         }
     }
     for (const void* array : of_clocks) {
-        if (array == nullptr && setup.cells > 0 && setup.clocks != 0) {
+        if (array == nullptr && setup.cells > 0 && setup.schedule == TILENCA_SCHEDULE_CLOCKS) {
             throw Refusal("an array of the clocks is null");
         }
+    }
+    if (setup.changes_count > 0) {
+        c_api::present(setup.changes, "changes");
     }
     if (setup.runs > 0) {
         c_api::present(setup.seeds, "seeds");
@@ -66,6 +69,17 @@ void check_clocks(const tilenca_setup& setup) {
     }
 }
 
+void check_changes(const tilenca_setup& setup) {
+    int32_t before = 0;
+    for (int32_t i = 0; i < setup.changes_count; ++i) {
+        const tilenca_change& change = setup.changes[i];
+        check_range<int32_t>("the step of a change", change.step, before, INT32_MAX);
+        check_range<int32_t>("the cell of a change", change.cell, 0, setup.cells - 1);
+        check_range<int32_t>("whether a change puts a tile down", change.on, 0, 1);
+        before = change.step;
+    }
+}
+
 } // namespace
 
 void check_model(const tilenca_model& model) {
@@ -85,6 +99,8 @@ void check_model(const tilenca_model& model) {
 void check_setup(const tilenca_setup& setup) {
     check_range<int32_t>("the number of runs", setup.runs, 0, INT32_MAX - 1);
     check_range<int32_t>("the number of cells", setup.cells, 0, INT32_MAX / kSides);
+    check_range<int>("the schedule", setup.schedule, TILENCA_SCHEDULE_HALVES, TILENCA_SCHEDULE_LISTING);
+    check_range<int32_t>("the number of changes", setup.changes_count, 0, INT32_MAX);
     check_range<int>("the fault", setup.fault, TILENCA_FAULT_NONE, TILENCA_FAULT_AWAY);
     check_range<uint64_t>("the loss", setup.loss, 0, uint64_t{1} << 32);
     check_arrays(setup);
@@ -95,9 +111,10 @@ void check_setup(const tilenca_setup& setup) {
         check_range<int32_t>("the end of a run", setup.starts[run + 1], setup.starts[run], setup.cells);
         check_run(setup, run);
     }
-    if (setup.clocks != 0) {
+    if (setup.schedule == TILENCA_SCHEDULE_CLOCKS) {
         check_clocks(setup);
     }
+    check_changes(setup);
 }
 
 } // namespace tilenca

@@ -3,13 +3,14 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
 from tilenca.shapes.sizes import Size, parse_size
+from tilenca.simulator.conditions import ScheduleKind
 
 MAX_COUNT = 1_000_000
 
@@ -100,9 +101,10 @@ def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--schedule",
-        choices=("random", "clock"),
+        choices=get_args(ScheduleKind),
         default="clock",
-        help="the paper's, or the tiles' clocks (clock)",
+        help="clock: the tiles' own clocks; listing: the paper's, one tile after another; random: two random "
+        "halves a step (clock)",
     )
     add("--loss", type=share, default=0.0, metavar="P", help="share of messages lost, 0..1 (0)")
     add(

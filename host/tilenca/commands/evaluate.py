@@ -18,14 +18,15 @@ from tilenca.commands.arguments import add_condition_arguments, add_model_argume
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY, validate
-from tilenca.evaluation.metrics import convergence_times
+from tilenca.evaluation.metrics import answer_shares, convergence_times
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 from tilenca.shapes.sizes import Size, size_name
+from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import Engine, FastEngine
-from tilenca.simulator.simulator import Conditions, Simulator
+from tilenca.simulator.simulator import Simulator
 from tilenca.views.progress import show_progress
 from tilenca.views.table import table
 
@@ -51,12 +52,14 @@ class RunResults:
         right: (R,) share of tiles that show the right class at the end.
         converged_at: (R,) step from which all were right to the end; infinite for none.
         regressed: (R,) whether a tile was wrong after step 60, in runs longer than that.
+        answers: (R,) what all tiles showed at the end, see `Simulator.answers`; None: not measured.
     """
 
     chosen: NDArray[np.int64]
     right: NDArray[np.float32]
     converged_at: NDArray[np.float64]
     regressed: NDArray[np.bool_]
+    answers: NDArray[np.int64] | None = None
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -116,11 +119,12 @@ def run(args: argparse.Namespace) -> int:
     else:
         conditions = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
         random = np.random.default_rng(args.seed)
-        trajectory = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random).run(
-            args.steps
-        )
+        simulator = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random)
+        trajectory = simulator.run(args.steps)
         regressed = ~trajectory.agreed[CONVERGED_BY - 1 :].all(axis=0) & (args.steps > CONVERGED_BY)
-        outcome = RunResults(chosen, trajectory.right[-1], trajectory.converged_at, regressed)
+        outcome = RunResults(
+            chosen, trajectory.right[-1], trajectory.converged_at, regressed, simulator.answers()
+        )
     report = _report(args, model, drawings, runs, outcome)
     if args.json:
         print(json.dumps(report))
@@ -252,10 +256,19 @@ def _report(
         "runs": runs,
         "cells_right": round(float(outcome.right.mean()), 6),
         "total_agreement": round(float(agreed.mean()), 6),
+        "missed": _missed(drawings, outcome),
         "steps_to_agreement": convergence_times(outcome.converged_at),
         "runs_with_a_regression": int(outcome.regressed.sum()),
         "per_shape": per_shape,
     }
+
+
+def _missed(drawings: Drawings, outcome: RunResults) -> dict[str, float] | None:
+    """The shares of the runs in which all tiles show the dash, all another class, or tiles differ."""
+    if outcome.answers is None:
+        return None
+    shares = answer_shares(drawings, outcome.chosen, outcome.answers)
+    return dict(zip(("dash", "wrong", "split"), shares, strict=True))
 
 
 def _print(report: dict[str, Any]) -> None:
@@ -274,3 +287,6 @@ def _print(report: dict[str, Any]) -> None:
         "are right and stay so"
     )
     print(table(("shape", "file", "cells right", "all right", "median", "95 %"), rows))
+    if report["missed"] is not None:
+        shares = ", ".join(f"{kind} {share:.4f}" for kind, share in report["missed"].items())
+        print(f"not right: {shares} of the runs; split: tiles of one body show different answers")

@@ -12,7 +12,7 @@ from tilenca.commands.arguments import add_model_argument, seed, whole
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
-from tilenca.simulator.simulator import ScheduleKind
+from tilenca.simulator.conditions import ScheduleKind
 
 HISTORY_FILE = "history.csv"
 FILM_SUFFIXES = (".png", ".svg", ".gif")

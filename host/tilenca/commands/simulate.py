@@ -22,9 +22,10 @@ from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import DARK_LOOK, look_of_class
+from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.rollout_library import DARK
-from tilenca.simulator.simulator import Conditions, Simulator, processors
+from tilenca.simulator.simulator import Simulator, processors
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.table import table
 from tilenca.views.tiles import Picture, beside

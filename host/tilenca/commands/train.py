@@ -21,6 +21,7 @@ from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
 from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH, checkpoints
 from tilenca.protocol.constants import MAX_CHANNELS
+from tilenca.shapes.variant import CHOOSING
 from tilenca.training.device import check_device
 from tilenca.training.recipes import RECIPES, aims_of, find_recipe
 
@@ -205,7 +206,7 @@ def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
     for trained in finished:
         model, _ = model_of(trained, {})
         suite = make_suite(
-            jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), suite_seed
+            jobs[0].task, jobs[0].sizes, model.labels, aims_of(trained.config.recipe), suite_seed, CHOOSING
         )
         rows = Evaluator(FastEngine(model), suite, SELECTION_RUNS, suite_seed).short_rows()
         shortfalls.append(sum(row.shortfall for row in rows))

@@ -12,6 +12,7 @@ from tilenca.shapes.derive import known_of
 from tilenca.shapes.file import UNKNOWN
 from tilenca.shapes.sizes import Sizes
 from tilenca.training.curriculum import labels_of
+from tilenca.training.generator import FEW
 from tilenca.training.recipes import Recipe, find_recipe
 
 
@@ -62,7 +63,7 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
             f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
             "tiles would learn to say that they do not know"
         )
-    if plan.recipe.damaged:
+    if plan.recipe.damaged and len(plan.task) <= FEW:
         known = known_of(plan.task.shapes)
         doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
         if doubts:

@@ -48,20 +48,23 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "",
         f"The firmware's own integers, {metrics['runs_per_drawing']} runs of every drawing in the main rows. "
         "A step is one update per tile; a run counts when *every* tile shows the right class after the steps "
-        "of the second column. Where a row does not say otherwise, tiles run on their own clocks: each has "
-        "a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, and all are switched on "
-        "within 10 periods; steps count from the last one. Intervals are Wilson's, for these drawings. "
-        "A target of 1.000 holds where the share rounds to 1.000. Drawings held out of training helped to "
-        "choose when to stop, with other runs and other random drawings than these. To measure it again:",
+        "of the second column. In the others all tiles show the dash, or all the same wrong class, or the "
+        "tiles of one body differ (split). Where a row does not say otherwise, tiles run on their own "
+        "clocks: each has a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, sends its "
+        "seed when it is switched on, and updates for the first time one period later. All are switched on "
+        "within 10 periods; steps count from the last one, or from the last change. Intervals are Wilson's, "
+        "for these drawings. A target of 1.000 holds where the share rounds to 1.000. Held-out sizes helped "
+        "to choose when to stop, with other runs than these. New pairs and drawings of no class had no form "
+        "in common with those that did. To measure it again:",
         "",
         f"    tilenca evaluate --suite --model DIR --shapes {' '.join(metadata['shapes'])} "
         f"--runs {metrics['runs_per_drawing']} --seed {metrics['seed']}",
         "",
         f"{metrics['targets_held']} targets held.",
         "",
-        "| what | after steps | drawings | runs | all tiles right | 95 % interval | "
+        "| what | after steps | drawings | runs | all tiles right | 95 % interval | dash | wrong | split | "
         "worst drawing | converged: median, 95 % | target |",
-        "|---|---|---|---|---|---|---|---|---|",
+        f"{'|---' * 12}|",
     ]
     lines += [_row(row) for row in metrics["rows"]]
     if metrics["weights_cut"]:
@@ -70,9 +73,10 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
 
 
 def _row(row: dict[str, Any]) -> str:
-    target = (
-        "" if row["target"] is None else f"{row['target']:.3f} {'held' if row['holds'] else '**missed**'}"
-    )
+    if row["target"] is not None:
+        target = f"{row['target']:.3f} {'held' if row['holds'] else '**missed**'}"
+    else:
+        target = "" if row.get("best") is None else f"at best {row['best']:.3f}"
     cells = (
         row["name"],
         f"{row['steps']}",
@@ -80,6 +84,7 @@ def _row(row: dict[str, Any]) -> str:
         f"{row['runs']}",
         f"{row['share']:.4f}",
         f"{row['low']:.4f} to {row['high']:.4f}",
+        *(_share(row.get(kind)) for kind in ("dash", "wrong", "split")),
         f"`{row['worst']['shape']}` {row['worst']['share']:.3f}",
         f"{_time(row['convergence']['median'])}, {_time(row['convergence']['p95'])}"
         if row["convergence"]
@@ -87,6 +92,11 @@ def _row(row: dict[str, Any]) -> str:
         target,
     )
     return f"| {' | '.join(cells)} |"
+
+
+def _share(share: float | None) -> str:
+    """A share of the runs; nothing where it was not measured."""
+    return "" if share is None else f"{share:.4f}"
 
 
 def _time(steps: float | None) -> str:

@@ -2,28 +2,39 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.evaluation.best_guess import best_share
 from tilenca.evaluation.metrics import Measurement, Runs, Target, measure, target_of
 from tilenca.evaluation.suites import Case, Suite
+from tilenca.simulator.conditions import Conditions, Fault, FaultKind, ScheduleKind
 from tilenca.simulator.engine import Engine
-from tilenca.simulator.simulator import Conditions, Fault, FaultKind, ScheduleKind, Simulator, Trajectory
-from tilenca.simulator.transitions import rebuild, rebuild_tile_by_tile
+from tilenca.simulator.simulator import Simulator, Trajectory
+from tilenca.simulator.transitions import Order, Way, rebuild
 
 MARKS = (10, 30, 60)  # steps after which agreement is reported
 CONVERGENCE_STEPS = (8, 14)  # steps within which half, and nearly all, of the runs are to converge
 CONVERGED_BY = MARKS[-1]  # from here on a wrong tile counts as a regression
 LONG = 1000
 LEAST_LASTING = 3000  # steps without a regression, in short measurements; slow drifts show after two thousand
-SCHEDULES: dict[ScheduleKind, str] = {"random": "the paper's sampler", "clock": "the tiles' own clocks"}
+SCHEDULES: dict[ScheduleKind, str] = {
+    "listing": "the paper's listing",
+    "random": "two random halves a step",
+    "clock": "the tiles' own clocks",
+}
 CLOCK = Conditions("clock")
+AT_ONCE = Way("at once")
+ORDERS: tuple[Order, ...] = ("adding first", "mixed", "removing first")
+SLOW_WAYS = tuple(Way(order, between) for order in ORDERS for between in (1, 15, 40))
 Say = Callable[[str], None]
+DEAD = "any one tile dead, the others asked"
 # The faults to measure: name, kind, first step, step of its end, and the kind of the target.
 FAULTS: tuple[tuple[str, FaultKind, int, int | None, str | None], ...] = (
-    ("any one tile dead, the others asked", "dead", 0, None, None),
+    (DEAD, "dead", 0, None, None),
     ("any one tile stuck after 5 steps, the others asked", "stuck", 5, None, None),
     ("any one tile off from step 30 to 60, back again", "away", 30, CONVERGED_BY, "away"),
 )
@@ -46,7 +57,7 @@ class Evaluator:
     def short_rows(self) -> Iterator[Measurement]:
         """The measurements during training: the clocks only, and nothing that takes long."""
         yield from self.agreement({"clock": SCHEDULES["clock"]})
-        for part in (self.sizes, self.disturbed, self.unknown):
+        for part in (self.varied, self.sizes, self.disturbed, self.unknown):
             yield from part()
         yield from self.changes(one_by_one=False)
         yield from self.longevity()
@@ -54,6 +65,7 @@ class Evaluator:
     def rows(self) -> Iterator[Measurement]:
         """All measurements, in the order of the table."""
         yield from self.agreement()
+        yield from self.varied()
         yield from self.sizes()
         yield from self.disturbed()
         yield from self.unknown()
@@ -61,10 +73,10 @@ class Evaluator:
         yield from self.longevity()
 
     def agreement(self, schedules: Mapping[ScheduleKind, str] = SCHEDULES) -> Iterator[Measurement]:
-        """The files' drawings on both schedules, the first file's time to converge, and larger drawings."""
+        """The files' drawings on all schedules, the first file's time to converge, and larger drawings."""
         for case in self.suite.drawn:
             for schedule, name in schedules.items():
-                runs = self._run(case, Conditions(schedule), CONVERGED_BY)
+                runs = self._run(case, Conditions(schedule), *MARKS)
                 for mark in MARKS:
                     target = target_of(case.kind) if mark > MARKS[0] else None
                     yield measure("drawings", f"{case.name}, {name}", runs, mark, target)
@@ -74,11 +86,17 @@ class Evaluator:
             runs = self._run(case, CLOCK, case.steps)
             yield measure("sizes", case.name, runs, case.steps, target_of(case.kind))
 
+    def varied(self) -> Iterator[Measurement]:
+        """Drawings by another hand: variants of held-out forms."""
+        if (case := self.suite.varied) is not None:
+            runs = self._run(case, CLOCK, case.steps, each=max(2, self.runs // 50))
+            yield measure("varied", case.name, runs, case.steps, target_of(case.kind))
+
     def sizes(self) -> Iterator[Measurement]:
         """Other sizes."""
         for case in self.suite.sizes:
             each = self.runs if case.held_out else max(2, self.runs // 25)
-            runs = self._run(case, CLOCK, case.steps, each)
+            runs = self._run(case, CLOCK, case.steps, each=each)
             yield measure("sizes", case.name, runs, case.steps, _target_if_aimed(case))
 
     def disturbed(self) -> Iterator[Measurement]:
@@ -90,10 +108,10 @@ class Evaluator:
         ):
             runs = self._run(drawn, conditions, CONVERGED_BY)
             yield measure("lost", name, runs, CONVERGED_BY, target_of("lost"))
-        if (damaged := self.suite.damaged) is not None:
-            name = "one tile missing, where that leaves no doubt about the class"
-            runs = self._run(damaged, CLOCK, CONVERGED_BY, max(2, self.runs // 5))
-            yield measure("damaged", name, runs, CONVERGED_BY, _target_if_aimed(damaged))
+        for case in self.suite.damaged:
+            each = max(2, 10 * self.runs // len(case.drawings))
+            runs = self._run(case, CLOCK, case.steps, each=each)
+            yield measure("damaged", case.name, runs, case.steps, _target_if_aimed(case))
         large = [n for n, size in enumerate(drawn.drawings.sizes) if size > 1]
         if large:  # without a single tile no tile is left to measure
             yield from self._faults(replace(drawn, drawings=drawn.drawings.chosen(large)))
@@ -106,57 +124,78 @@ class Evaluator:
             changed_at = begin if end is None else end
             mark = changed_at + CONVERGED_BY
             runs = self._run(case, Conditions("clock", fault=fault), mark)
-            yield measure(
+            row = measure(
                 "faults", name, runs, mark, None if target is None else target_of(target), changed_at
             )
+            yield replace(row, best=round(best_share(case.drawings.shapes), 5)) if name == DEAD else row
 
     def unknown(self) -> Iterator[Measurement]:
         """Drawings of no class: a run is right if every tile shows the dash."""
         for case in self.suite.unknown:
             each = max(2, 10 * self.runs // len(case.drawings))
-            runs = self._run(case, CLOCK, case.steps, each)
+            runs = self._run(case, CLOCK, case.steps, each=each)
             yield measure("unknown", case.name, runs, case.steps, _target_if_aimed(case))
 
     def changes(self, one_by_one: bool = True) -> Iterator[Measurement]:
-        """Every change from one class to another on running tiles, without a reset."""
+        """Every change from one class to another on running tiles, without a reset.
+
+        Steps count from the last change.
+        """
         drawn = self.suite.drawn[0]
-        for case, how, change, target in (
-            (drawn, "at once", rebuild, "switch"),
-            *(((drawn, "tile by tile", rebuild_tile_by_tile, "tile by tile"),) if one_by_one else ()),
-            *((case, "at once", rebuild, "larger switch") for case in self.suite.larger),
+        for case, way, target in (
+            (drawn, AT_ONCE, "switch"),
+            *((drawn, way, "tile by tile") for way in SLOW_WAYS if one_by_one),
+            *((case, AT_ONCE, "larger switch") for case in self.suite.larger),
         ):
-            each = max(1, self.runs // (10 if how == "at once" else 50))
-            changed = change(self.engine, case.drawings, each, CONVERGED_BY, case.steps, self.random)
+            each = max(1, self.runs // (10 if way is AT_ONCE else 40))
+            changed = rebuild(self.engine, case.drawings, each, CONVERGED_BY, case.steps, self.random, way)
             if changed is not None:
-                trajectory, chosen = changed
-                name = f"{case.name}, changes to every other class {how}"
-                runs = Runs(case, chosen, trajectory)
+                name = f"{case.name}, changes to every other class{_way_name(way)}"
+                runs = Runs(case, changed.chosen, changed.trajectory, {case.steps: changed.answers})
                 yield measure("changes", name, runs, case.steps, target_of(target))
 
     def longevity(self) -> Iterator[Measurement]:
         """Long runs: all right after 1000 steps, and without a regression after convergence."""
         drawn = self.suite.drawn[0]
-        runs = self._run(drawn, CLOCK, LONG, max(1, self.runs // 5))
+        runs = self._run(drawn, CLOCK, LONG, each=max(1, self.runs // 5))
         name = f"{drawn.name}, {SCHEDULES['clock']}"
         yield measure("longevity", name, runs, LONG, target_of("long"))
         steps = max(LEAST_LASTING, 20 * self.runs)
         for case in (self.suite.drawn[0], *self.suite.larger[-1:]):
             each = max(1, -(-self.runs // (5 * len(case.drawings))))
-            runs = self._run(case, CLOCK, case.steps + steps, each)
+            runs = self._run(case, CLOCK, case.steps + steps, each=each)
             always = Trajectory(runs.trajectory.right[case.steps - 1 :].min(axis=0, keepdims=True))
             name = f"{case.name}, no regression in {steps} more steps"
             row = measure("longevity", name, replace(runs, trajectory=always), 1, target_of("longevity"))
             yield replace(row, steps=case.steps + steps, convergence=None)
 
-    def _run(self, case: Case, conditions: Conditions, steps: int, each: int | None = None) -> Runs:
-        """Runs every drawing of a case, `each` times or as often as the evaluator does."""
+    def _run(self, case: Case, conditions: Conditions, *marks: int, each: int | None = None) -> Runs:
+        """Runs every drawing of a case, `each` times or as often as the evaluator does.
+
+        Args:
+            case: the drawings.
+            conditions: of all runs.
+            marks: the steps after which all tiles are asked for their answer, ascending; the last one ends
+                the runs.
+            each: how often; None: as often as the evaluator does.
+        """
         chosen = self._every_drawing(case, self.runs if each is None else each)
         simulator = Simulator(self.engine, case.drawings, chosen, conditions, self.random)
-        return Runs(case, chosen, simulator.run(steps))
+        parts, answers = [], {}
+        for before, mark in pairwise((0, *marks)):
+            parts.append(simulator.run(mark - before).right)
+            answers[mark] = simulator.answers()
+        return Runs(case, chosen, Trajectory(np.concatenate(parts)), answers)
 
     @staticmethod
     def _every_drawing(case: Case, each: int) -> NDArray[np.int64]:
         return np.repeat(np.arange(len(case.drawings)), each)
+
+
+def _way_name(way: Way) -> str:
+    if way.order == "at once":
+        return " at once"
+    return f", {way.order}, a tile every {way.between} update{'s' if way.between > 1 else ''}"
 
 
 def _convergence(runs: Runs) -> Iterator[Measurement]:

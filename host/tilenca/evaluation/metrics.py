@@ -4,13 +4,16 @@ A run counts as right when *every* tile shows the right class. `tilenca.evaluati
 """
 
 import math
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.evaluation.suites import Case
+from tilenca.shapes.batch import Drawings
+from tilenca.shapes.file import UNKNOWN
 from tilenca.simulator.simulator import Trajectory
 
 
@@ -27,11 +30,13 @@ TARGETS = {
     "drawn": Target(PERFECT, 0.998),
     "converged in 8": Target(0.5),
     "converged in 14": Target(0.95),
+    "varied": Target(0.92),
     "trained": Target(0.998, 0.9),
     "held out": Target(0.99),
     "very large": Target(0.95),
     "lost": Target(0.99),
     "damaged": Target(0.97),
+    "damaged, large": Target(0.95),
     "away": Target(PERFECT),
     "random drawings": Target(0.98),
     "halves of drawings": Target(0.90),
@@ -57,11 +62,14 @@ class Runs:
         case: the case.
         chosen: (R,) which of its drawings each run has.
         trajectory: their results.
+        answers: by the number of steps, (R,) what all counted tiles of a run showed then, see
+            `tilenca.simulator.simulator.Simulator.answers`; steps without an entry were not asked for it.
     """
 
     case: Case
     chosen: NDArray[np.int64]
     trajectory: Trajectory
+    answers: Mapping[int, NDArray[np.int64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -81,6 +89,11 @@ class Measurement:
         without such steps.
         target: least share; None: only measured.
         floor: least share of every drawing.
+        dash: share of the runs in which all tiles showed the dash, and that was not right; None as `split`.
+        wrong: share of the runs in which all tiles showed the same other class; None as `split`.
+        split: share of the runs in which tiles of one body showed different answers, the dash included; None
+            for rows that are about more than one moment.
+        best: the largest share that any tiles could reach, where that is known and less than 1.
     """
 
     key: str
@@ -95,6 +108,10 @@ class Measurement:
     convergence: dict[str, float | None] | None
     target: float | None = None
     floor: float = 0.0
+    dash: float | None = None
+    wrong: float | None = None
+    split: float | None = None
+    best: float | None = None
 
     @property
     def holds(self) -> bool:
@@ -111,6 +128,10 @@ class Measurement:
     def text(self) -> str:
         """One line for people."""
         line = f"{self.name}, @{self.steps}: {self.share:.4f}"
+        if self.split is not None:
+            line += f", dash {self.dash:.4f}, wrong {self.wrong:.4f}, split {self.split:.4f}"
+        if self.best is not None:
+            line += f", at best {self.best:.4f}"
         if self.holds:
             return line
         worst = (
@@ -163,6 +184,11 @@ def measure(
         changed_at: the step of the last change, from which steps are counted.
     """
     agreed = runs.trajectory.agreed[mark - 1]
+    dash, wrong, split = (
+        answer_shares(runs.case.drawings, runs.chosen, runs.answers[mark])
+        if mark in runs.answers
+        else (None, None, None)
+    )
     shares = {int(n): float(agreed[runs.chosen == n].mean()) for n in np.unique(runs.chosen)}
     worst = min(shares, key=lambda number: shares[number])
     low, high = wilson(int(agreed.sum()), len(agreed))
@@ -179,4 +205,25 @@ def measure(
         convergence_times(np.maximum(runs.trajectory.converged_at - changed_at, 0)),
         None if target is None else target.share,
         0.0 if target is None else target.floor,
+        dash,
+        wrong,
+        split,
     )
+
+
+def answer_shares(
+    drawings: Drawings, chosen: NDArray[np.int64], answers: NDArray[np.int64]
+) -> tuple[float, float, float]:
+    """The shares of the runs that are dash, wrong and split, see `Measurement`.
+
+    Args:
+        drawings: the task.
+        chosen: (R,) the drawing of each run.
+        answers: (R,) see `tilenca.simulator.simulator.Simulator.answers`.
+    """
+    unknown = drawings.labels.index(UNKNOWN) if UNKNOWN in drawings.labels else None
+    missed = answers != drawings.classes[chosen]
+    dash = missed & (answers == unknown) if unknown is not None else np.zeros_like(missed)
+    split = answers < 0
+    shares = (round(float(kind.mean()), 5) for kind in (dash, missed & ~dash & ~split, split))
+    return next(shares), next(shares), next(shares)

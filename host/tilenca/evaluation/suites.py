@@ -1,6 +1,8 @@
 """Test suites: a task's drawings at every size, damaged, rebuilt, and drawings of no class.
 
-Training never sees the drawings of a case that is `held_out`: certain sizes and unknown drawings.
+Training never sees the drawings of a case that is `held_out`: certain sizes, and unknown and damaged drawings
+whose form is held out (`variant.split_of`), whatever their size. The measurements during training and those
+of the final model have no such form in common.
 """
 
 from collections.abc import Iterable, Sequence
@@ -9,16 +11,21 @@ from itertools import chain
 
 import numpy as np
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes, size_name
-from tilenca.shapes.variants import Known
+from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
+VARIANTS = {CHOOSING: 12, LAST: 40}  # of each class
+VARIANT_TRIES = 200  # for each of them
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
+# Sizes at which a tile is missing, beside the files' own, where the task has them.
+DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
+DAMAGED_LARGE = 100  # such a drawing has another target from this area on
 
 
 @dataclass(frozen=True)
@@ -50,16 +57,19 @@ class Suite:
         drawn: the drawings of the files, one case for each.
         sizes: the first file's drawings at other sizes, the trained ones together, each held out one alone
             and without drawings that are also those of a trained size (a line has no width).
-        damaged: one tile missing where that leaves no doubt about the class; None: no such case.
+        damaged: one tile missing where that leaves no doubt about the class: for several sizes the pairs of a
+            drawing and a missing tile that training may use, and those that are held out from it.
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
+        varied: variants of held-out forms; None: the classes are just their drawings.
     """
 
     drawn: tuple[Case, ...]
     sizes: tuple[Case, ...]
-    damaged: Case | None
+    damaged: tuple[Case, ...]
     unknown: tuple[Case, ...]
     larger: tuple[Case, ...]
+    varied: Case | None = None
 
 
 @dataclass(frozen=True)
@@ -77,7 +87,9 @@ class Aims:
     unknown: bool = False
 
 
-def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int) -> Suite:
+def make_suite(
+    task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
+) -> Suite:
     """Makes the suite of a task.
 
     Args:
@@ -85,7 +97,8 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         sizes: of the task.
         labels: the model's.
         aims: of its training.
-        seed: of the unknown drawings.
+        seed: of the unknown drawings and of the variants.
+        split: which held-out forms to ask: those for `CHOOSING` a model, or those for the `LAST` measurement.
     """
     task = replace(task, labels=labels)
     first = task.group(0)
@@ -93,15 +106,35 @@ def make_suite(task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims
         Case("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
-    known = known_of(task.shapes)
-    less = damaged(first, known, " less one")
+    aimed = sizes.within(task.largest, aims.stretch)
     return Suite(
         drawn,
-        tuple(_size_cases(task, first, sizes, sizes.within(task.largest, aims.stretch))),
-        Case("damaged", "one tile missing", task.of(less), 60, aimed=aims.damaged) if less else None,
-        tuple(_unknown_cases(task, first, known, aims, seed)) if UNKNOWN in labels else (),
-        tuple(_larger(task, first, sizes.within(task.largest, aims.stretch))),
+        tuple(_size_cases(task, first, sizes, aimed)),
+        tuple(_damaged_cases(task, first, aimed, aims, split)),
+        tuple(_unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
+        tuple(_larger(task, first, aimed)),
+        _varied_case(task, seed, split),
     )
+
+
+def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
+    """Variants of forms that training never draws."""
+    if task.variants is None:
+        return None
+    random = np.random.default_rng(seed)
+    found: dict[tuple[str, ...], Shape] = {}
+    for label in task.variants.labels:
+        wanted = len(found) + VARIANTS[split]
+        for _ in range(VARIANT_TRIES * VARIANTS[split]):
+            if len(found) == wanted:
+                break
+            variant = task.variants.draw(label, split, random)
+            if variant is not None:
+                found.setdefault(
+                    variant.rows, Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
+                )
+    name = f"held-out forms, {size_name(task.variants.least)} to {size_name(task.variants.most)}"
+    return Case("varied", name, task.of(list(found.values())), LARGE_STEPS, held_out=True) if found else None
 
 
 def _steps(size: Size) -> int:
@@ -149,20 +182,38 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
         yield Case(kind, size_name(size), task.of(at_size(first, size)), _steps(size))
 
 
+def _damaged_cases(
+    task: Drawings, first: Sequence[Shape], aimed: Sizes, aims: Aims, split: str
+) -> Iterable[Case]:
+    """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
+    for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
+        shapes = first if size is None else at_size(first, size)
+        steps = SHORT_STEPS if size is None else _steps(size)
+        known = known_of([*task.shapes, *shapes])
+        height, width = size or task.largest
+        kind = "damaged" if height * width < DAMAGED_LARGE else "damaged, large"
+        for which, name in ((TRAINED, "pairs that training may use"), (split, "new pairs")):
+            if less := damaged(shapes, known, " less one", which):
+                label = f"{size_name(size or task.largest)}, one tile missing, {name}"
+                new = which == split
+                yield Case(kind, label, task.of(less), steps, held_out=new, aimed=aims.damaged)
+
+
 def _unknown_cases(
-    task: Drawings, first: Sequence[Shape], known: Known, aims: Aims, seed: int
+    task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, split: str
 ) -> Iterable[Case]:
     random = np.random.default_rng(seed)
+    known = known_of(task.shapes)
     drawings = [shape.rows for shape in first]
 
     for name, wanted, draw in (
-        ("random drawings", 500, variants.some_grown(drawings, random, least=4)),
-        ("halves of drawings", 100, variants.some_halves(drawings, random)),
-        ("other choices of the same strokes", 100, variants.some_strokes(drawings, random)),
+        ("random drawings", 500, edits.some_grown(drawings, random, least=4)),
+        ("halves of drawings", 100, edits.some_halves(drawings, random)),
+        ("other choices of the same strokes", 100, edits.some_strokes(drawings, random)),
     ):
-        if found := draw_unknown(wanted, draw, known, held_out=True):
+        if found := draw_unknown(wanted, draw, known, split):
             shapes = [Shape(UNKNOWN, rows, f"none, {'/'.join(rows)}") for rows in found]
-            label = f"no class: {name}, never trained on"
+            label = f"no class: {name}, forms never trained on"
             yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
 
 

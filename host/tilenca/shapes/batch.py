@@ -7,7 +7,7 @@ which "no neighbour" is an index one past the last cell, where callers keep a ro
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
@@ -18,8 +18,12 @@ from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
 from tilenca.shapes.file import Shape, Task, load_task
 from tilenca.shapes.sizes import Sizes, size_name
+from tilenca.shapes.skeleton import of_rows
+from tilenca.shapes.stretch import Rows
+from tilenca.shapes.variant import Variants
 
 Indices = NDArray[np.int64]
+UNLABELLED, NO_CLASS = "", -1  # drawings whose tiles must agree on any class
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,14 @@ class Drawings:
         groups: for each drawing the number of the file it came from, or in training of its scale.
         labels: the classes; class k is `labels[k]`.
         sources: `{"file", "sha256"}` of every file.
+        variants: draws what the classes may become; None: the drawings are all there is.
     """
 
     shapes: tuple[Shape, ...]
     groups: tuple[int, ...]
     labels: tuple[str, ...]
     sources: tuple[dict[str, str], ...]
+    variants: Variants | None = None
 
     def __len__(self) -> int:
         return len(self.shapes)
@@ -77,16 +83,47 @@ class Drawings:
 
     @cached_property
     def classes(self) -> Indices:
-        """(S,) class of each drawing."""
-        return np.array([self.labels.index(shape.label) for shape in self.shapes], dtype=np.int64)
+        """(S,) class of each drawing; `NO_CLASS` for unlabelled ones."""
+        numbers = {label: number for number, label in enumerate(self.labels)} | {UNLABELLED: NO_CLASS}
+        return np.array([numbers[shape.label] for shape in self.shapes], dtype=np.int64)
 
     @cached_property
-    def tables(self) -> Indices:
+    def extents(self) -> Indices:
+        """(S, 2) rows and columns of each drawing."""
+        return np.array([(len(shape.rows), len(shape.rows[0])) for shape in self.shapes], dtype=np.int64)
+
+    @cached_property
+    def tables(self) -> NDArray[np.int16]:
         """(S, M, 4) neighbour of each cell within its drawing, -1 for none; M is the largest size."""
-        tables = np.full((len(self), int(self.sizes.max()), len(SIDES)), -1, dtype=np.int64)
+        tables = np.full((len(self), int(self.sizes.max()), len(SIDES)), -1, dtype=np.int16)
         for number, shape in enumerate(self.shapes):
             tables[number, : self.sizes[number]] = shape.neighbours()
         return tables
+
+    def replaced(self, numbers: Sequence[int], shapes: Sequence[Shape]) -> "Drawings":
+        """The same with other drawings in some places.
+
+        Args:
+            numbers: (K,) the places.
+            shapes: K drawings.
+        """
+        every = list(self.shapes)
+        for number, shape in zip(numbers, shapes, strict=True):
+            every[number] = shape
+        new, other = replace(self, shapes=tuple(every)), self.of(shapes)
+        places = np.asarray(numbers, np.int64)
+        most = max(self.tables.shape[1], other.tables.shape[1])
+        tables = np.full((len(self), most, len(SIDES)), -1, np.int16)
+        tables[:, : self.tables.shape[1]] = self.tables
+        tables[places] = -1
+        tables[places, : other.tables.shape[1]] = other.tables
+        # What is cached of the others stays.
+        new.__dict__["tables"] = tables
+        for name in ("sizes", "classes", "extents"):
+            values = getattr(self, name).copy()
+            values[places] = getattr(other, name)
+            new.__dict__[name] = values
+        return new
 
     def chosen(self, numbers: Iterable[int]) -> "Drawings":
         """Some of these drawings, in a group of their own."""
@@ -125,15 +162,10 @@ class Drawings:
         """Rows and columns by which `new` is shifted when it is laid on `old` as `overlap` does."""
         down, right = (
             int(random.integers(min(room, 0), max(room, 0) + 1))
-            for room in (a - b for a, b in zip(self._extent(old), self._extent(new), strict=True))
+            for room in self.extents[old] - self.extents[new]
         )
         return down, right
 
-    def _extent(self, number: int) -> tuple[int, int]:
-        rows = self.shapes[number].rows
-        return len(rows), len(rows[0])
-
-    @lru_cache(maxsize=4096)  # noqa: B019 - lives as long as the process, like the drawings
     def _overlap(self, old: int, new: int, down: int, right: int) -> Indices:
         index = {cell: place for place, cell in enumerate(self.shapes[old].cells)}
         cells = self.shapes[new].cells
@@ -160,8 +192,7 @@ def _join(
     paths: Sequence[Path], tasks: Iterable[Task], max_classes: int | None, labels: Sequence[str] | None
 ) -> Drawings:
     """`load_drawings` of tasks; each task is taken only at its file's turn, so that errors come in order."""
-    shapes: list[Shape] = []
-    groups: list[int] = []
+    shapes: dict[Rows, tuple[Shape, int]] = {}
     found: dict[str, None] = {}
     coming = iter(tasks)
     for group, path in enumerate(paths):
@@ -170,11 +201,12 @@ def _join(
                 f"{path}: another file has that name too, and tables name files by it; rename one"
             )
         for shape in next(coming).shapes:
-            twin = next((n for n, other in enumerate(shapes) if other.rows == shape.rows), None)
-            if twin is not None and shapes[twin].label != shape.label:
+            # The same drawing of the same label in two files is one drawing.
+            twin, of = shapes.setdefault(shape.rows, (shape, group))
+            if twin.label != shape.label:
                 raise UsageError(
-                    f"{path}: '{shape.name}' is drawn exactly like '{shapes[twin].name}' of "
-                    f"{paths[groups[twin]]}; remove or redraw one"
+                    f"{path}: '{shape.name}' is drawn exactly like '{twin.name}' of "
+                    f"{paths[of]}; remove or redraw one"
                 )
             if labels is not None and shape.label not in labels:
                 raise UsageError(
@@ -182,10 +214,7 @@ def _join(
                     "train one on this file with `tilenca train`"
                 )
             found.setdefault(shape.label)
-            if twin is None:  # the same drawing of the same label in two files is one drawing
-                shapes.append(shape)
-                groups.append(group)
-        if group not in groups:
+        if all(of != group for _, of in shapes.values()):
             raise UsageError(f"{path}: the files before it have all of its drawings; leave it out")
         if max_classes is not None and len(found) > max_classes:
             raise UsageError(
@@ -195,7 +224,8 @@ def _join(
     sources = tuple(
         {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()} for path in paths
     )
-    return Drawings(tuple(shapes), tuple(groups), tuple(found) if labels is None else tuple(labels), sources)
+    every, groups = zip(*shapes.values(), strict=True)
+    return Drawings(every, groups, tuple(found) if labels is None else tuple(labels), sources)
 
 
 def load_training_task(
@@ -222,7 +252,20 @@ def load_training_task(
     if stretch > 1:
         paths, more = [*paths, *more], ()
     tasks = chain([drawn], (load_task(path, max_classes) for path in paths[1:]))
-    return _join(paths, tasks, max_classes, labels), replace(sizes, drawn=more)
+    joined = _join(paths, tasks, max_classes, labels)
+    return replace(joined, variants=_variants_of(drawn)), replace(sizes, drawn=more)
+
+
+def _variants_of(task: Task) -> Variants | None:
+    """What the classes of a file may become; None where they are just its drawings."""
+    if task.vary is None:
+        return None
+    # The skeletons of all drawings of a file share one unit square, so that narrow ones stay narrow.
+    rows, cols = max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
+    unit = np.maximum((cols - 1, rows - 1), 1)
+    drawn = [(shape.label, of_rows(shape.rows)) for shape in task.shapes]
+    scaled = [(label, replace(skeleton, points=skeleton.points / unit)) for label, skeleton in drawn]
+    return Variants([*scaled, *task.forms], task.vary.sized((rows, cols), task.sizes), task.sizes.held_out)
 
 
 def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:

@@ -1,15 +1,16 @@
 """Shapes derived from a task's shapes: at other sizes, damaged, and drawings of no class.
 
-Training and test suites derive them alike; `variants.held_out` keeps the drawings of no class apart.
+Training and test suites derive them alike; `variant.split_of` keeps their forms apart.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
-from tilenca.shapes import variants
+from tilenca.shapes import edits
+from tilenca.shapes.edits import Known
 from tilenca.shapes.file import Shape
 from tilenca.shapes.sizes import Size
 from tilenca.shapes.stretch import Rows, smallest
-from tilenca.shapes.variants import Known
+from tilenca.shapes.variant import split_of
 
 
 def known_of(shapes: Iterable[Shape]) -> Known:
@@ -35,18 +36,20 @@ def at_sizes(shapes: Sequence[Shape], sizes: Iterable[Size]) -> Iterator[list[Sh
             yield at_size(shapes, size, up)
 
 
-def damaged(shapes: Iterable[Shape], known: Known, suffix: str) -> list[Shape]:
+def damaged(shapes: Iterable[Shape], known: Known, suffix: str, split: str) -> list[Shape]:
     """The shapes with one tile missing, where that leaves no doubt about the class.
 
     Args:
         shapes: shapes of the task.
         known: the index of all its shapes.
         suffix: of their names.
+        split: only those on this side of the split (`variant.split_of`).
     """
     return [
         Shape(shape.label, rows, f"{shape.name}{suffix}")
         for shape in shapes
         for rows in known.damaged(shape.label, shape.rows)
+        if split_of(rows) == split
     ]
 
 
@@ -54,24 +57,20 @@ def draw_unknown(
     wanted: int,
     draw: Callable[[], Rows | None],
     known: Known,
-    held_out: bool,
+    split: str,
     doubtful: Collection[Rows] = (),
 ) -> list[Rows]:
     """Draws different drawings of no class; fewer than `wanted` where hardly a new one turns up.
 
     Args:
         wanted: how many.
-        draw: the source of drawings, see `variants.Drawer`.
+        draw: the source of drawings, see `edits.Drawer`.
         known: the index of the task's shapes, which are excluded with all that look like them.
-        held_out: draw those that are kept from training, or else the others.
+        split: draw only those on this side of the split (`variant.split_of`).
         doubtful: the smallest forms of other drawings to exclude, at every size.
     """
 
     def fits(rows: Rows) -> bool:
-        return (
-            variants.held_out(rows) == held_out
-            and not known.is_known(rows)
-            and smallest(rows) not in doubtful
-        )
+        return split_of(rows) == split and not known.is_known(rows) and smallest(rows) not in doubtful
 
-    return variants.draw_until(wanted, draw, fits)
+    return edits.draw_until(wanted, draw, fits)

@@ -3,11 +3,13 @@
 A file is TOML: `[[shape]]` tables with `label = "4"` and a `grid` of text rows, `#` a tile and `.` or a blank
 none. All shapes of one file form one task; a label may recur (variants of one class). The classes are the
 labels in order of first appearance. A table `[sizes]` lists other sizes at which the task's drawings keep
-their class (`tilenca.shapes.sizes`).
+their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawings of a class may differ
+(`tilenca.shapes.vary`), and `orientations` whether they may be turned or mirrored (`tilenca.shapes.orient`).
 """
 
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -17,8 +19,16 @@ from tilenca.base.paths import DEFAULT_SHAPES
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
+from tilenca.shapes.orient import (
+    orientations,
+    orientations_of_skeleton,
+    read_orientations,
+    refuse_collisions,
+)
 from tilenca.shapes.sizes import Size, Sizes, read_sizes, size_name
+from tilenca.shapes.skeleton import Skeleton
 from tilenca.shapes.stretch import stretch
+from tilenca.shapes.vary import Vary, read_forms, read_vary
 
 EMPTY = ".", " "
 UNKNOWN = "-"  # the label of drawings of no class
@@ -70,6 +80,8 @@ class Task:
     shapes: tuple[Shape, ...]
     labels: tuple[str, ...]
     sizes: Sizes = field(default_factory=Sizes)
+    vary: Vary | None = field(default_factory=Vary)
+    forms: tuple[tuple[str, Skeleton], ...] = ()
 
     def find(self, name: str) -> Shape:
         """The shape called `name` (`4`, or `4@2` for the second drawing of "4").
@@ -115,20 +127,46 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         raise UsageError(f"{path}: not valid TOML: {error}") from error
     tables = document.pop("shape", None)
     sizes = read_sizes(path, document.pop("sizes", {}))
+    vary = read_vary(path, document.pop("vary", {}))
+    forms = document.pop("forms", {})
+    kind = read_orientations(path, document.pop("orientations", None))
     if document:
         raise UsageError(
-            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables and [sizes]"
+            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables, "
+            "[sizes], [vary], [forms] and orientations"
         )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
-    return replace(_task(path, tables, list(_table_lines(text)), max_classes), sizes=sizes)
+    task = _in_all(_task(path, tables, list(_table_lines(text)), max_classes), kind)
+    skeletons = tuple(
+        (label, other)
+        for label, skeleton in read_forms(path, forms, task.labels)
+        for other in orientations_of_skeleton(skeleton, kind)
+    )
+    return replace(task, sizes=sizes, vary=vary, forms=skeletons)
+
+
+def _in_all(task: Task, kind: str | None) -> Task:
+    """The task with its drawings in all orientations."""
+    if kind is None:
+        return task
+    refuse_collisions(task.path, ((shape.label, shape.rows) for shape in task.shapes), kind)
+    shapes = {shape.rows: shape for shape in task.shapes}
+    count = Counter(shape.label for shape in task.shapes)
+    for shape in task.shapes:
+        for rows in orientations(shape.rows, kind):
+            if rows not in shapes:
+                count[shape.label] += 1
+                shapes[rows] = Shape(shape.label, rows, f"{shape.label}@{count[shape.label]}")
+    return replace(task, shapes=tuple(shapes.values()))
 
 
 def _task(
     path: Path, tables: list[dict[str, object]], lines: list[tuple[int, int]], max_classes: int | None
 ) -> Task:
-    shapes: list[Shape] = []
+    shapes: dict[tuple[str, ...], Shape] = {}
     labels: list[str] = []
+    drawn: Counter[str] = Counter()
     for number, table in enumerate(tables):
         # Tables written in an unusual form (inline, quoted keys) have no known line: name their number.
         header, grid_line = lines[number] if len(lines) == len(tables) else (0, 0)
@@ -144,14 +182,13 @@ def _task(
                 f"{where}: '{label}' is class {len(labels)}, the model's state has room for {max_classes}; "
                 "draw fewer classes or train with a wider --state"
             )
-        for other in shapes:
-            if other.rows == rows:
-                raise UsageError(
-                    f"{where}: '{label}' is drawn exactly like '{other.name}'; remove or redraw one"
-                )
-        drawn = sum(other.label == label for other in shapes)
-        shapes.append(Shape(label, rows, label if drawn == 0 else f"{label}@{drawn + 1}"))
-    return Task(path, tuple(shapes), tuple(labels))
+        if rows in shapes:
+            raise UsageError(
+                f"{where}: '{label}' is drawn exactly like '{shapes[rows].name}'; remove or redraw one"
+            )
+        drawn[label] += 1
+        shapes[rows] = Shape(label, rows, label if drawn[label] == 1 else f"{label}@{drawn[label]}")
+    return Task(path, tuple(shapes.values()), tuple(labels))
 
 
 def _label(where: str, table: dict[str, object], labels: list[str]) -> str:

@@ -25,19 +25,19 @@ class NumpyRollout:
         # The message that each cell holds of its N, E, S, W neighbour; the last row stands for no cell.
         self.received = np.zeros((len(states) + 1, len(SIDES), engine.channels), self.own.dtype)
         self.counted = setup.alive.copy()
-        if setup.fault != "away":
-            self.counted[setup.faulty[setup.faulty >= 0]] = False
+        self.faulty = setup.faulty[setup.faulty >= 0]  # counts all the time when it is away, else never
+        self.counted[self.faulty] &= setup.fault == "away"
 
     def run(self, right: NDArray[np.float32], shown: NDArray[np.int8] | None, threads: int) -> None:
         """As `CompiledRollout.run`, but always in one thread."""
         del threads
         starts = self.setup.starts[:-1]
-        total = np.add.reduceat(self.counted, starts, dtype=np.float32)
         for step in range(len(right)):
             while not self._tick():
                 pass
             good = self.counted & (self.shown == self.setup.target)
-            right[step] = np.add.reduceat(good, starts, dtype=np.float32) / total
+            total = np.add.reduceat(self.counted, starts, dtype=np.float32)
+            right[step] = np.add.reduceat(good, starts, dtype=np.float32) / np.maximum(total, 1)
             if shown is not None:
                 shown[step] = self.shown
 
@@ -45,6 +45,8 @@ class NumpyRollout:
         """Carries out one tick; true when it is the last one of a step."""
         tick = self.schedule.next()
         self.shown[tick.gone] = DARK
+        self.counted[np.setdiff1d(tick.gone, self.faulty)] = False
+        self.counted[np.setdiff1d(tick.born, self.faulty)] = True
         self.states[tick.born] = self.engine.seed(len(tick.born))
         self.own[tick.born] = self.engine.message(self.states[tick.born])
         self.received[tick.born] = 0

@@ -17,6 +17,7 @@ TICKS_PER_STEP = 20  # TILENCA_TICKS of simulator.h: the resolution of a step on
 UNITS_PER_STEP = TICKS_PER_STEP << 16  # TILENCA_UNITS_PER_TICK
 LOSS_UNITS = 1 << 32
 DARK = -1
+SCHEDULES = ("random", "clock", "listing")  # TILENCA_SCHEDULE_... in their order
 FAULTS = ("none", "dead", "stuck", "away")  # TILENCA_FAULT_... in their order
 NOBODY = -1
 
@@ -30,17 +31,20 @@ class Setup:
     Attributes:
         starts: (R + 1,) the first cell of each run, and N.
         neighbours: (N, 4) N, E, S, W; N for none.
-        alive: (N,) false: dead from the start.
+        alive: (N,) false: not there at the start.
         target: (N,) the class that is right.
         seeds: (R,) uint64, of the random generator of each run.
         loss: share of messages lost.
         zeros: whether a lost message reads as zeros; else the last one is held.
-        clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None:
-            the paper's sampler.
+        schedule: one of `SCHEDULES`, see `tilenca.simulator.simulator.Conditions`.
+        clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None
+            for a schedule without clocks. A tile is switched on one period before its first update.
+        running: whether all tiles run already, and their neighbours have their messages.
         fault: one of `FAULTS`.
         faulty: (R,) the cell with the fault, `NOBODY` for none.
         begin: first step of the fault.
         end: step at which a tile that was away is back.
+        changes: (K, 3) int32, step, cell and whether it is put down (1) or taken away (0), by their steps.
     """
 
     starts: NDArray[Any]
@@ -50,11 +54,14 @@ class Setup:
     seeds: NDArray[np.uint64]
     loss: float
     zeros: bool
+    schedule: str
     clocks: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float] | None
+    running: bool
     fault: str
     faulty: NDArray[Any]
     begin: int
     end: int
+    changes: NDArray[np.int32]
 
 
 def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
@@ -76,17 +83,20 @@ def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
         "period": pointer(units(period), "int64_t"),
         "latency": pointer(units(latency), "int64_t"),
         "faulty": pointer(setup.faulty.astype(np.int32), "int32_t"),
+        "changes": pointer(np.ascontiguousarray(setup.changes, np.int32), "tilenca_change"),
     }
     numbers = {
         "runs": len(setup.seeds),
         "cells": len(setup.alive),
         "loss": round(setup.loss * LOSS_UNITS),
         "zeros": setup.zeros,
-        "clocks": setup.clocks is not None,
+        "schedule": SCHEDULES.index(setup.schedule),
+        "running": setup.running,
         "start": int(units(start)),
         "fault": FAULTS.index(setup.fault),
         "begin": setup.begin,
         "end": setup.end,
+        "changes_count": len(setup.changes),
     }
     return library().ffi.new("tilenca_setup*", numbers | arrays), list(arrays.values())
 
@@ -149,7 +159,7 @@ class Tick:
 
     Attributes:
         gone: cells that fall silent and dark.
-        born: cells that are switched on again in the seed state, without any message.
+        born: cells that are switched on in the seed state, without any message.
         senders: (A,) cells whose current message arrives.
         arrives: (A, 4) bool, on which sides.
         updating: (U,) cells that update.

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from tilenca.model.file import Model
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
+from tilenca.simulator.conditions import Conditions, ScheduleKind
 from tilenca.simulator.engine import FastEngine
-from tilenca.simulator.simulator import Conditions, ScheduleKind, Simulator
+from tilenca.simulator.simulator import Simulator
 
 NOTHING = -1
 
@@ -48,7 +49,7 @@ class Film:
 def record(
     model: Model, drawings: Drawings, number: int, steps: int, schedule: ScheduleKind, seed: int
 ) -> Film:
-    """Records a run of one drawing; all tiles are switched on at step 0.
+    """Records a run of one drawing; its tiles are switched on within one update of each other.
 
     Args:
         model: of the tiles.
@@ -65,7 +66,7 @@ def record(
         FastEngine(model),
         drawings,
         np.array([number], np.int64),
-        Conditions(schedule, boot=0.0),
+        Conditions(schedule, boot=1.0),
         np.random.default_rng(seed),
     )
 

@@ -1,6 +1,12 @@
-"""Grids rebuilt into other drawings while running: tiles that stay keep their state, new ones are seeds."""
+"""Grids rebuilt into other drawings while running: tiles that stay go on, new ones are switched on.
 
-from collections.abc import Iterator, Sequence
+The grid of a run has a cell for every tile of both drawings. So neighbours hold the last message of a tile
+that was taken away until it has been silent for six periods, and a new tile is absent until its first frame.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,73 +14,131 @@ from numpy.typing import NDArray
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.cells import removable
+from tilenca.shapes.edits import Cell, rows_of
 from tilenca.shapes.file import Shape
-from tilenca.shapes.variants import Cell, rows_of
+from tilenca.shapes.stretch import Rows
+from tilenca.simulator.conditions import Conditions, Rebuilding
 from tilenca.simulator.engine import Engine, States
-from tilenca.simulator.simulator import Conditions, Simulator, Trajectory
+from tilenca.simulator.simulator import Simulator, Trajectory
 
-BETWEEN = 3  # steps from one tile to the next
 PLACES_TRIED = 100
-Changed = tuple[Trajectory, NDArray[np.int64]]
+Order = Literal["at once", "adding first", "mixed", "removing first"]
+Step = list[tuple[Cell, bool]]  # tiles put down (true) or taken away at the same time
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a drawing is rebuilt.
+
+    Attributes:
+        order: all tiles "at once", or one after the other: those of the new drawing first ("adding first"),
+            the old ones first as far as the rest stays connected ("removing first"), or in any order
+            ("mixed"). The tiles are connected all the time.
+        between: steps from one tile to the next.
+    """
+
+    order: Order = "at once"
+    between: int = 1
+
+
+@dataclass(frozen=True)
+class Changed:
+    """Rebuilt grids.
+
+    Attributes:
+        trajectory: of the new drawings; its first step ends one step after the last change.
+        chosen: (R,) the number of each run's new drawing.
+        answers: (R,) at the end, see `Simulator.answers`.
+    """
+
+    trajectory: Trajectory
+    chosen: NDArray[np.int64]
+    answers: NDArray[np.int64]
 
 
 def rebuild(
-    engine: Engine, drawings: Drawings, runs: int, before: int, after: int, random: np.random.Generator
+    engine: Engine,
+    drawings: Drawings,
+    runs: int,
+    before: int,
+    after: int,
+    random: np.random.Generator,
+    way: Way = Way(),
 ) -> Changed | None:
-    """Every drawing rebuilt at once into every one of another class.
+    """Every drawing rebuilt into every one of another class.
 
     Args:
         engine: the model.
         drawings: of one size.
         runs: runs of each change.
         before: steps of the old drawing.
-        after: steps of the new one.
+        after: steps after the last change.
         random: the only source of chance.
+        way: how.
 
     Returns:
-        The trajectory of the new drawings, and (R,) their numbers; None where there is only one class.
-    """
-    pairs = np.array(list(_pairs(drawings)) * runs, dtype=np.int64).reshape(-1, 2)
-    if not len(pairs):
-        return None
-    old, new = pairs.T
-    first = Simulator(engine, drawings, old, Conditions("clock"), random)
-    first.run(before)
-    stays = [drawings.overlap(int(a), int(b), random) for a, b in pairs]
-    states = moved(engine, first, stays)
-    return Simulator(engine, drawings, new, Conditions("clock", boot=0.0), random, states).run(after), new
-
-
-def rebuild_tile_by_tile(
-    engine: Engine, drawings: Drawings, runs: int, before: int, after: int, random: np.random.Generator
-) -> Changed | None:
-    """The same, one tile after the other: those of the new drawing put down, then the old ones taken away.
-
-    States are kept. All tiles' clocks are drawn anew at every change, and the last messages are forgotten;
-    real tiles have it easier.
+        The runs; None where there is only one class.
     """
     pairs = list(_pairs(drawings)) * runs
     if not pairs:
         return None
-    walks = [list(_walk(drawings, old, new, random)) for old, new in pairs]
-    lengths = np.array([len(walk) for walk in walks])
-    numbers: dict[tuple[Cell, ...], int] = {}
-    for walk in walks:
-        for cells in walk:
-            numbers.setdefault(cells, len(numbers))
-    every = drawings.of([Shape(drawings.labels[0], rows_of(cells), "") for cells in numbers])
-    state = None
-    for step in range(int(lengths.max())):
-        # Runs that have reached their new drawing wait for the others.
-        now = [walk[min(step, len(walk) - 1)] for walk in walks]
-        chosen = np.array([numbers[cells] for cells in now])
-        boot = 10.0 if state is None else 0.0
-        simulator = Simulator(engine, every, chosen, Conditions("clock", boot=boot), random, state)
-        simulator.run(before if step == 0 else BETWEEN)
-        following = [walk[min(step + 1, len(walk) - 1)] for walk in walks]
-        state = moved(engine, simulator, [_stays(a, b) for a, b in zip(now, following, strict=True)])
-    new = np.array([pair[1] for pair in pairs])
-    return Simulator(engine, drawings, new, Conditions("clock", boot=0.0), random, state).run(after), new
+    sites = [_Site.plan(drawings, old, new, way.order, random) for old, new in pairs]
+    number_of: dict[tuple[Rows, str], int] = {}
+    for site in sites:
+        number_of.setdefault(site.drawing, len(number_of))
+    grids = drawings.of([Shape(label, rows, "") for rows, label in number_of])
+    chosen = np.array([number_of[site.drawing] for site in sites])
+    last = before + (max(len(site.steps) for site in sites) - 1) * way.between
+    rebuilding = _timetable(sites, last, way.between)
+    simulator = Simulator(engine, grids, chosen, Conditions("clock"), random, rebuilding=rebuilding)
+    simulator.run(last)
+    trajectory = simulator.run(after)
+    return Changed(trajectory, np.array([new for _, new in pairs]), simulator.answers())
+
+
+@dataclass(frozen=True)
+class _Site:
+    """A grid with a cell for every tile of two drawings, and the way from one to the other.
+
+    Attributes:
+        cells: all cells, in reading order.
+        old: those of the old drawing.
+        steps: the changes.
+        label: of the new drawing.
+    """
+
+    cells: tuple[Cell, ...]
+    old: frozenset[Cell]
+    steps: list[Step]
+    label: str
+
+    @property
+    def drawing(self) -> tuple[Rows, str]:
+        """All cells as a drawing, and its label."""
+        return rows_of(self.cells), self.label
+
+    @staticmethod
+    def plan(drawings: Drawings, old: int, new: int, order: Order, random: np.random.Generator) -> "_Site":
+        """Lays the new drawing on the old one and chooses the order of the changes."""
+        tiles = set(drawings.shapes[old].cells)
+        wanted = _laid_on(drawings, old, new, random)
+        steps = (
+            [_all_changes(tiles, wanted)] if order == "at once" else list(walk(tiles, wanted, order, random))
+        )
+        cells = tuple(sorted(tiles | wanted))
+        return _Site(cells, frozenset(tiles), steps, drawings.shapes[new].label)
+
+
+def _timetable(sites: Sequence[_Site], last: int, between: int) -> Rebuilding:
+    """The switches of all runs; each has its last one before step `last`."""
+    present: list[bool] = []
+    switches: list[tuple[int, int, int]] = []
+    for site in sites:
+        index = {cell: len(present) + place for place, cell in enumerate(site.cells)}
+        present += [cell in site.old for cell in site.cells]
+        for back, changes in enumerate(reversed(site.steps)):
+            switches += [(last - back * between, index[cell], on) for cell, on in changes]
+    return Rebuilding(np.array(present, np.bool_), np.array(sorted(switches), np.int32).reshape(-1, 3))
 
 
 def _pairs(drawings: Drawings) -> Iterator[tuple[int, int]]:
@@ -96,17 +160,36 @@ def moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]])
     return np.concatenate(parts)
 
 
-def _walk(drawings: Drawings, old: int, new: int, random: np.random.Generator) -> Iterator[tuple[Cell, ...]]:
-    """Connected sets of cells from one drawing to another, one tile apart, each sorted."""
-    tiles = set(drawings.shapes[old].cells)
-    wanted = _laid_on(drawings, old, new, random)
-    yield tuple(sorted(tiles))
-    while missing := sorted(cell for cell in wanted - tiles if any(near in tiles for near in _around(cell))):
-        tiles.add(missing[int(random.integers(len(missing)))])
-        yield tuple(sorted(tiles))
-    while extra := [cell for cell in removable(sorted(tiles)) if cell not in wanted]:
-        tiles.remove(extra[int(random.integers(len(extra)))])
-        yield tuple(sorted(tiles))
+def _all_changes(old: set[Cell], new: set[Cell]) -> Step:
+    return [(cell, True) for cell in sorted(new - old)] + [(cell, False) for cell in sorted(old - new)]
+
+
+def walk(old: set[Cell], new: set[Cell], order: Order, random: np.random.Generator) -> Iterator[Step]:
+    """The changes from one set of cells to another, one tile at a time; tiles are connected all the time.
+
+    Args:
+        old: connected cells.
+        new: connected cells, some of them among the old ones.
+        order: see `Way`; not "at once".
+        random: the only source of chance.
+    """
+    tiles = set(old)
+
+    def addable() -> list[tuple[Cell, bool]]:
+        return [(cell, True) for cell in sorted(new - tiles) if any(near in tiles for near in _around(cell))]
+
+    def takable() -> list[tuple[Cell, bool]]:
+        return [(cell, False) for cell in removable(sorted(tiles)) if cell not in new]
+
+    choices: dict[str, Callable[[], list[tuple[Cell, bool]]]] = {
+        "adding first": lambda: addable() or takable(),
+        "removing first": lambda: takable() or addable(),
+        "mixed": lambda: addable() + takable(),
+    }
+    while possible := choices[order]():
+        cell, on = possible[int(random.integers(len(possible)))]
+        tiles ^= {cell}
+        yield [(cell, on)]
 
 
 def _laid_on(drawings: Drawings, old: int, new: int, random: np.random.Generator) -> set[Cell]:
@@ -124,8 +207,3 @@ def _laid_on(drawings: Drawings, old: int, new: int, random: np.random.Generator
 
 def _around(cell: Cell) -> list[Cell]:
     return [(cell[0] + down, cell[1] + right) for down, right in OFFSETS]
-
-
-def _stays(now: Sequence[Cell], following: Sequence[Cell]) -> NDArray[np.int64]:
-    places = {cell: place for place, cell in enumerate(now)}
-    return np.array([places.get(cell, -1) for cell in following], dtype=np.int64)

@@ -1,7 +1,7 @@
-"""The drawings to train on: a task's own, stretched ones, damaged ones, and drawings of no class.
+"""The drawings to train on: a task's own, at other sizes, and many that are drawn by chance and renewed.
 
-A grid is rebuilt only into drawings of its own scale; a drawing's weight is its share of the grids. The task,
-the recipe and one random generator decide all of it.
+The files' drawings and the stretched ones stay. The others (`training.generator`) fill the places that the
+recipe's `library` gives them, and are replaced again and again, so that training sees thousands of drawings.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.shapes import variants
 from tilenca.shapes.batch import Drawings
-from tilenca.shapes.derive import at_sizes, damaged, draw_unknown, known_of
+from tilenca.shapes.derive import at_sizes
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.sizes import Size, Sizes
-from tilenca.shapes.stretch import Rows, smallest
-from tilenca.shapes.variants import Known
+from tilenca.shapes.stretch import Rows
+from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED, Generator
 from tilenca.training.recipes import Recipe
 
-DAMAGED = " damaged"
+DRAWN, STRETCHED = "drawn", "stretched"
+WHOLE = (DRAWN, STRETCHED, VARIED)
 
 
 @dataclass(frozen=True)
@@ -27,56 +27,57 @@ class Curriculum:
     """Drawings to train on.
 
     Attributes:
-        drawings: all of them; `groups` are scales.
+        drawings: all of them.
+        kinds: (S,) the kind of each.
         weights: (S,) float64, share of the grids that a drawing gets; sums to 1.
-        whole: (S,) bool, drawings of a class without damage; training begins with them.
+        failing: (S,) int64, the record of failures that a drawing belongs to: of its own, or of its kind and
+            class where it is renewed.
+        generator: draws the ones that are renewed; None: none is.
     """
 
     drawings: Drawings
+    kinds: NDArray[np.str_]
     weights: NDArray[np.float64]
-    whole: NDArray[np.bool_]
+    failing: NDArray[np.int64]
+    generator: Generator | None = None
 
+    @property
+    def whole(self) -> NDArray[np.bool_]:
+        """(S,) drawings of a class without damage; training begins with them."""
+        whole: NDArray[np.bool_] = np.isin(self.kinds, WHOLE)
+        return whole
 
-@dataclass(frozen=True)
-class UnknownKind:
-    """A kind of drawings of no class.
+    @property
+    def renewable(self) -> NDArray[np.bool_]:
+        """(S,) drawings that are renewed."""
+        renewable: NDArray[np.bool_] = ~np.isin(self.kinds, (DRAWN, STRETCHED))
+        return renewable
 
-    Attributes:
-        share: of all drawings of no class.
-        elsewhere: whether they are made from the drawings at other sizes, or from those of the files.
-        each: how many of every scale.
-        drawer: makes them.
-    """
+    @property
+    def records(self) -> int:
+        """How many records of failures there are, those of drawings to come included."""
+        return int((~self.renewable).sum()) + len(np.unique(self.kinds)) * (len(self.drawings.labels) + 1)
 
-    share: float
-    elsewhere: bool
-    each: int
-    drawer: variants.Drawer
+    @property
+    def most_tiles(self) -> int:
+        """The most tiles of any drawing, those of drawings to come included."""
+        largest = int(self.drawings.sizes.max())
+        return largest if self.generator is None else max(largest, self.generator.most_tiles)
 
+    def renewed(self, places: NDArray[np.int64], random: np.random.Generator) -> "Curriculum":
+        """The curriculum with new drawings in some places, which are renewable."""
+        if self.generator is None:
+            return self
+        return self.with_drawings(
+            places, [self.generator.draw(self.kinds[place], random) for place in places]
+        )
 
-UNKNOWN_KINDS = (
-    UnknownKind(0.4, False, 100, variants.some_strokes),
-    UnknownKind(0.08, False, 100, variants.some_edited),
-    UnknownKind(0.17, False, 100, variants.some_halves),
-    UnknownKind(0.1, False, 100, variants.some_grown),
-    UnknownKind(0.22, True, 12, variants.some_strokes),
-    UnknownKind(0.03, True, 3, variants.some_edited),
-)
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Drawings that have a share of the grids together.
-
-    Attributes:
-        share: of the grids, 0..1.
-        entries: scale and drawing.
-        whole: whether they are drawings of a class without damage.
-    """
-
-    share: float
-    entries: list[tuple[int, Shape]]
-    whole: bool = False
+    def with_drawings(self, places: NDArray[np.int64], shapes: Sequence[Shape]) -> "Curriculum":
+        """The curriculum with these drawings in some places."""
+        if not len(places):
+            return self
+        drawings = self.drawings.replaced(places.tolist(), shapes)
+        return replace(self, drawings=drawings, failing=_failing(drawings, self.kinds))
 
 
 def labels_of(task: Drawings, recipe: Recipe, max_classes: int) -> tuple[str, ...]:
@@ -93,71 +94,51 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
         task: the drawings of the files, with the model's labels.
         recipe: the shares.
         sizes: other sizes to stretch the drawings of the first file to.
-        random: for the drawings of no class.
+        random: for the drawings that are drawn by chance.
     """
     fitting = sizes.within(task.largest, recipe.stretch)
-    scales = _scales(task, fitting.trained + fitting.more)
-    known = known_of(shape for scale in scales for shape in scale)
-    less = damaged(scales[0], known, DAMAGED) if recipe.damaged else []
-    drawn = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n < len(task.sources)]
-    stretched = [(n, shape) for n, scale in enumerate(scales) for shape in scale if n >= len(task.sources)]
-    parts = [
-        _Part(recipe.stretched, stretched, whole=True),
-        _Part(recipe.damaged, [(0, shape) for shape in less]),
+    drawn, stretched = list(task.shapes), list(_stretched(task, fitting.trained + fitting.more))
+    shares = {
+        STRETCHED: recipe.stretched if stretched else 0.0,
+        VARIED: recipe.varied if task.variants is not None else 0.0,
+        DAMAGED: recipe.damaged,
+        OF_NO_CLASS: recipe.unknown if UNKNOWN in task.labels else 0.0,
+        FREE: recipe.unlabelled,
+    }
+    shares = {DRAWN: 1 - sum(shares.values()), **shares}
+    entries = [(DRAWN, shape) for shape in drawn] + [
+        (STRETCHED, shape) for shape in stretched if shares[STRETCHED]
     ]
-    if recipe.unknown > 0 and UNKNOWN in task.labels:
-        # A large drawing without a stroke looks like a small one without a tile.
-        doubtful = {smallest(shape.rows) for shape in less}
-        for kind in UNKNOWN_KINDS:
-            found = list(_unknown(kind, scales, len(task.sources), known, doubtful, random))
-            parts.append(_Part(recipe.unknown * kind.share, found))
-    parts = [part for part in parts if part.share and part.entries]
-    return _curriculum(task, [_Part(1 - sum(part.share for part in parts), drawn, whole=True), *parts])
+    renewed = {kind: share for kind, share in shares.items() if kind not in (DRAWN, STRETCHED) and share}
+    generator = None
+    if renewed:
+        generator = Generator(
+            task, [shape for _, shape in entries], tuple(renewed), recipe.library // 5, random
+        )
+        for kind, share in renewed.items():
+            count = max(len(task.labels), round(recipe.library * share / sum(renewed.values())))
+            entries += [(kind, generator.draw(kind, random)) for _ in range(count)]
+    kinds = np.array([kind for kind, _ in entries])
+    drawings = replace(task, shapes=tuple(shape for _, shape in entries), groups=(0,) * len(entries))
+    counts = {kind: int((kinds == kind).sum()) for kind in shares}
+    weights = np.array([shares[kind] / counts[kind] for kind, _ in entries])
+    return Curriculum(drawings, kinds, weights, _failing(drawings, kinds), generator)
 
 
-def _curriculum(task: Drawings, parts: Sequence[_Part]) -> Curriculum:
-    """The curriculum that consists of these parts."""
-    entries = [entry for part in parts for entry in part.entries]
-    drawings = replace(
-        task,
-        shapes=tuple(shape for _, shape in entries),
-        groups=tuple(scale for scale, _ in entries),
-    )
-    weights = [np.full(len(part.entries), part.share / len(part.entries)) for part in parts]
-    whole = [part.whole for part in parts for _ in part.entries]
-    return Curriculum(drawings, np.concatenate(weights), np.array(whole))
-
-
-def _scales(task: Drawings, sizes: Sequence[Size]) -> list[list[Shape]]:
-    """The drawings file by file, then those of the first file at every other size."""
-    scales = [task.group(number) for number in range(len(task.sources))]
+def _stretched(task: Drawings, sizes: Sequence[Size]) -> Iterator[Shape]:
+    """The drawings of the first file at other sizes, without those that another class has too."""
     taken: dict[Rows, str] = {shape.rows: shape.label for shape in task.shapes}
-    for shapes in at_sizes(scales[0], sizes):
-        scale = [shape for shape in shapes if taken.setdefault(shape.rows, shape.label) == shape.label]
-        if scale and scale != scales[-1]:
-            scales.append(scale)
-    return scales
+    for shapes in at_sizes(task.group(0), sizes):
+        for shape in shapes:
+            if shape.rows not in taken:
+                taken[shape.rows] = shape.label
+                yield shape
 
 
-def _unknown(
-    kind: UnknownKind,
-    scales: Sequence[Sequence[Shape]],
-    files: int,
-    known: Known,
-    doubtful: set[Rows],
-    random: np.random.Generator,
-) -> Iterator[tuple[int, Shape]]:
-    """Drawings of no class, with their scales.
-
-    Args:
-        kind: how they are made.
-        scales: the drawings of each scale.
-        files: how many scales are those of the files, which come first.
-        known: the index of all drawings of a class.
-        doubtful: the smallest forms of damaged drawings, which may not recur at any size.
-        random: the only source of chance.
-    """
-    for number in range(files, len(scales)) if kind.elsewhere else range(files):
-        draw = kind.drawer([shape.rows for shape in scales[number]], random)
-        for rows in draw_unknown(kind.each, draw, known, held_out=False, doubtful=doubtful):
-            yield number, Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")
+def _failing(drawings: Drawings, kinds: NDArray[np.str_]) -> NDArray[np.int64]:
+    """(S,) records of failures: own ones of what stays, those of kind and class of what is renewed."""
+    stays = np.isin(kinds, (DRAWN, STRETCHED))
+    _, number = np.unique(kinds, return_inverse=True)
+    shared = int(stays.sum()) + number * (len(drawings.labels) + 1) + drawings.classes + 1
+    failing: NDArray[np.int64] = np.where(stays, np.cumsum(stays) - 1, shared)
+    return failing

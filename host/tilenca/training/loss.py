@@ -10,8 +10,12 @@ two terms:
 
 from dataclasses import dataclass
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
+
+from tilenca.shapes.batch import NO_CLASS
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,24 @@ def scores_of(states: Tensor, classes: int) -> Tensor:
         (N, K) float32.
     """
     return states[:, -classes:]
+
+
+def agreed_targets(scores: Tensor, target: Tensor, starts: NDArray[np.int64]) -> Tensor:
+    """The targets, with the class that the tiles of an unlabelled grid favour together in place of none.
+
+    Args:
+        scores: (N, K) float32.
+        target: (N,) int64, `NO_CLASS` in unlabelled grids.
+        starts: (B,) int64, the first cell of each grid.
+
+    Returns:
+        (N,) int64.
+    """
+    if not bool((target == NO_CLASS).any()):
+        return target
+    sums = np.add.reduceat(scores.detach().cpu().numpy(), starts, axis=0)
+    favoured = np.repeat(sums.argmax(axis=1), np.diff(np.append(starts, len(target))))
+    return torch.where(target == NO_CLASS, torch.from_numpy(favoured).to(target.device), target)
 
 
 def loss_of(start: Tensor, end: Tensor, goal: Goal, stability_penalty: float) -> Tensor:

@@ -12,8 +12,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from tilenca.shapes.batch import Batch
-from tilenca.training.curriculum import Curriculum
+from tilenca.shapes.batch import Batch, Drawings
+from tilenca.shapes.file import Shape
+from tilenca.training.curriculum import DRAWN, Curriculum
 from tilenca.training.recipes import Recipe
 from tilenca.training.update_schedule import Circumstances
 
@@ -21,6 +22,8 @@ States = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
 UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
+SAME_SCALE = 2, 3  # rows and columns by which drawings may differ that are rebuilt into each other
+PATIENCE = 1000  # ticks for which a grid that does not agree is left alone
 CONVERGED_AFTER = 40  # ticks without a disturbance after which a wrong tile counts as a failure
 
 
@@ -33,12 +36,14 @@ class Pool:
         states: (P, M, C) float32, states of its cells, unused places zero.
         age: (P,) int64, ticks since the last disturbance.
         lifetime: (P,) int64, ticks after which an undisturbed grid starts anew.
+        wrong: (P,) bool, grids that should have converged and had a wrong tile when they were last seen.
     """
 
     drawing: Numbers
     states: States
     age: Numbers
     lifetime: Numbers
+    wrong: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -75,24 +80,32 @@ class Pools:
         self, recipe: Recipe, curriculum: Curriculum, channels: int, random: np.random.Generator
     ) -> None:
         self.recipe = recipe
-        self.drawings = drawings = curriculum.drawings
         self.curriculum = curriculum
         self.random = random
         self.channels = channels
         self._seed = np.eye(1, channels, dtype=np.float32)
-        # The recent share of failures of each drawing, 0..1; a drawing counts as failing until it is
-        # measured.
-        self.failures = np.ones(len(drawings))
-        groups = np.array(drawings.groups)
-        self._same_scale = [np.flatnonzero(groups == group) for group in range(groups.max() + 1)]
-        self._everything = np.arange(len(drawings))
+        # The recent share of failures of each record, 0..1; a drawing counts as failing until it is measured.
+        self.failures = np.ones(curriculum.records)
+        self._everything = np.arange(len(curriculum.kinds))
         self._whole = np.flatnonzero(curriculum.whole)
-        self._drawn = np.flatnonzero(curriculum.whole & (groups < len(drawings.sources)))
+        self._drawn = np.flatnonzero(curriculum.kinds == DRAWN)
         self._weigh(0.0)
         self.perturbed = self._empty(recipe.perturbed_pool)
         self.undisturbed = self._empty(recipe.undisturbed_pool)
         for pool in (self.perturbed, self.undisturbed):
             self._refill(pool)
+
+    @property
+    def drawings(self) -> Drawings:
+        """All drawings, those that are renewed as they are now."""
+        return self.curriculum.drawings
+
+    def renew(self) -> None:
+        """Replaces some of the drawings that no grid has by new ones."""
+        renewable = np.flatnonzero(self.curriculum.renewable)
+        idle = np.setdiff1d(renewable, np.concatenate((self.perturbed.drawing, self.undisturbed.drawing)))
+        count = min(len(idle), round(self.recipe.renewed * len(renewable)))
+        self.curriculum = self.curriculum.renewed(self.random.permutation(idle)[:count], self.random)
 
     def take(self, progress: float) -> Taken:
         """Draws a batch, and disturbs some of it.
@@ -130,6 +143,9 @@ class Pools:
             self._refill(self.perturbed)
             return np.arange(count), 0, 0
         taken = self.random.choice(recipe.perturbed_pool, count, replace=False)
+        # Grids that do not agree go on until they do, and others are disturbed instead.
+        stays = self.perturbed.wrong[taken] & (self.perturbed.age[taken] < PATIENCE)
+        taken = np.concatenate((taken[~stays], taken[stays]))
         resets = round(recipe.reset * count)
         switched = resets + round(recipe.switch * count)
         disturbed = switched + round(recipe.state_shuffle * count)
@@ -170,7 +186,8 @@ class Pools:
         self.undisturbed.age[taken.undisturbed] += ticks[count:]
         # A grid that was disturbed a moment ago may be wrong; converged grids must be right.
         converged = self.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
-        seen = self.perturbed.drawing[taken.perturbed][converged]
+        self.perturbed.wrong[taken.perturbed] = converged & ~right[:count]
+        seen = self.curriculum.failing[self.perturbed.drawing[taken.perturbed][converged]]
         self.failures[seen] += FAILURE_EMA * (~right[:count][converged] - self.failures[seen])
 
     def state(self) -> dict[str, Any]:
@@ -179,7 +196,11 @@ class Pools:
             name: {field.name: torch.from_numpy(getattr(pool, field.name)) for field in fields(pool)}
             for name, pool in (("perturbed", self.perturbed), ("undisturbed", self.undisturbed))
         }
-        return state | {"failures": torch.from_numpy(self.failures)}
+        renewed = [
+            (s.label, s.rows, s.name)
+            for s in np.array(self.drawings.shapes, object)[self.curriculum.renewable]
+        ]
+        return state | {"failures": torch.from_numpy(self.failures), "renewed": renewed}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Continues with what `state` returned."""
@@ -187,11 +208,15 @@ class Pools:
             for field in fields(pool):
                 setattr(pool, field.name, state[name][field.name].cpu().numpy().copy())
         self.failures = state["failures"].cpu().numpy().copy()
+        places = np.flatnonzero(self.curriculum.renewable)
+        self.curriculum = self.curriculum.with_drawings(places, [Shape(*shape) for shape in state["renewed"]])
 
     def _empty(self, count: int) -> Pool:
-        shape = (count, int(self.drawings.sizes.max()), self.channels)
+        shape = (count, self.curriculum.most_tiles, self.channels)
         zeros = np.zeros(count, np.int64)
-        return Pool(zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy())
+        return Pool(
+            zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy(), np.zeros(count, np.bool_)
+        )
 
     def _refill(self, pool: Pool) -> None:
         for number in range(len(pool.age)):
@@ -202,7 +227,7 @@ class Pools:
         least, (begin, end) = 0.05, self.recipe.ramp
         grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
         weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)
-        failing = weights * (self.failures + 1e-3)
+        failing = weights * (self.failures[self.curriculum.failing] + 1e-3)
         self._chances = (1 - self.recipe.failure_weighting) * weights / weights.sum()
         self._chances += self.recipe.failure_weighting * failing / failing.sum()
 
@@ -216,8 +241,9 @@ class Pools:
         return np.array([self._pick(among) for _ in range(count)], np.int64)
 
     def pick_other(self, drawing: int) -> int:
-        """Another drawing of its scale; the same where there is none."""
-        others = self._same_scale[self.drawings.groups[drawing]]
+        """Another drawing of about its size; the same where there is none."""
+        extents = self.drawings.extents
+        others = np.flatnonzero((np.abs(extents - extents[drawing]) <= SAME_SCALE).all(axis=1))
         others = others[others != drawing]
         return self._pick(others) if len(others) else drawing
 
@@ -246,6 +272,7 @@ class Pools:
         self.perturbed.states[number] = 0.0
         self.perturbed.states[number, : len(states)] = states
         self.perturbed.age[number] = CONVERGED_AFTER
+        self.perturbed.wrong[number] = True
 
     def reset(self, pool: Pool, number: int) -> None:
         """Starts a grid anew with any drawing, every tile in its seed state."""

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from tilenca.model.file import Model
 from tilenca.protocol.constants import STATE_MAX
 from tilenca.shapes.batch import Drawings
+from tilenca.simulator.conditions import Conditions, Fault
 from tilenca.simulator.engine import SEED_STATE, FastEngine
-from tilenca.simulator.simulator import Conditions, Fault, Simulator
+from tilenca.simulator.simulator import Simulator
 from tilenca.simulator.transitions import moved
 from tilenca.training.pool import Pool, Pools, States
 
@@ -26,6 +27,7 @@ TICKS_PER_STEP = 3  # of training, about as many as one period of a tile there
 CLOCKS = Conditions("clock", boot=0.0)
 BEGINNINGS = (Conditions("random"), Conditions("clock"), Conditions("clock", loss=0.5))
 BEFORE, AGREED_BY = 50, 60  # steps before a disturbance, and steps after it in which the tiles must agree
+REFRESHED = 128  # grids of the undisturbed pool at once
 MOST_HARD_EXAMPLES = 1 / 8  # of the perturbed pool
 
 
@@ -37,7 +39,7 @@ def as_integers(states: States) -> NDArray[np.int16]:
 def refresh_undisturbed(
     model: Model, pool: Pool, drawings: Drawings, steps: tuple[int, int], random: np.random.Generator
 ) -> None:
-    """Runs all grids of a pool for some steps on tiles' clocks, without losses.
+    """Runs some grids of a pool for some steps on tiles' clocks, without losses.
 
     Args:
         model: the network.
@@ -48,12 +50,14 @@ def refresh_undisturbed(
     """
     least, most = map(math.log, steps)
     count = round(math.exp(random.uniform(least, most)))
-    batch = drawings.batch(pool.drawing)
-    states = as_integers(pool.states[batch.sample, batch.place])
-    simulator = Simulator(FastEngine(model), drawings, pool.drawing, CLOCKS, random, states)
+    some = random.permutation(len(pool.drawing))[:REFRESHED]
+    batch = drawings.batch(pool.drawing[some])
+    grid = some[batch.sample]
+    states = as_integers(pool.states[grid, batch.place])
+    simulator = Simulator(FastEngine(model), drawings, pool.drawing[some], CLOCKS, random, states)
     simulator.run(count)
-    pool.states[batch.sample, batch.place] = simulator.states / np.float32(SEED_STATE)
-    pool.age += count * TICKS_PER_STEP
+    pool.states[grid, batch.place] = simulator.states / np.float32(SEED_STATE)
+    pool.age[some] += count * TICKS_PER_STEP
 
 
 def mine_hard_examples(model: Model, pools: Pools, runs: int, random: np.random.Generator) -> int:
@@ -85,7 +89,7 @@ def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Gener
     drawings = pools.drawings
 
     def some() -> NDArray[np.int64]:
-        return np.concatenate((pools.pick_whole(runs, drawn=True), pools.pick_whole(runs // 3)))
+        return np.concatenate((pools.pick_whole(runs, drawn=True), pools.pick_whole(runs)))
 
     for conditions in BEGINNINGS:
         yield Simulator(engine, drawings, some(), conditions, random)
@@ -97,7 +101,7 @@ def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Gener
     stays = [drawings.overlap(int(a), int(b), random) for a, b in zip(old, new, strict=True)]
     yield Simulator(engine, drawings, new, CLOCKS, random, moved(engine, built, stays))
 
-    chosen = pools.pick_whole(runs, drawn=True)
+    chosen = some()
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
     back = Simulator(engine, drawings, chosen, Conditions("clock", fault=away), random)
     back.run(BEFORE)

@@ -56,9 +56,13 @@ class Recipe:
         stale: share of samples in which all neighbours of a tile miss a message now and then; they go on with
             the stale message before it.
         max_stale: largest share of messages that all neighbours miss.
+        library: drawings that are drawn by chance and renewed, of all kinds together.
+        renewed: share of them that is renewed whenever the pools are refreshed.
+        varied: share of variants of the classes, where the shape file has `[vary]`.
+        unlabelled: share of drawings whose class is in doubt: their tiles must agree on any answer.
         stretch: largest factor by which drawings are stretched, where the shape file has sizes; 1: not.
         stretched: share of stretched drawings among the grids.
-        damaged: share of drawings with one tile missing.
+        damaged: share of drawings with tiles missing.
         unknown: share of drawings of no class, whose tiles learn to show a dash.
         ramp: between these shares of the iterations damaged and unknown drawings grow to their full share.
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
@@ -101,6 +105,10 @@ class Recipe:
     longest_loss: int = 1
     stale: float = 0.0
     max_stale: float = 0.0
+    library: int = 6000
+    renewed: float = 0.2
+    varied: float = 0.0
+    unlabelled: float = 0.0
     stretch: float = 1.0
     stretched: float = 0.0
     damaged: float = 0.0
@@ -115,7 +123,7 @@ class Recipe:
 # tiles must not name a shape that is none of the task's.
 FULL = Recipe(
     hidden=DEFAULT_HIDDEN,
-    iterations=40_000,
+    iterations=100_000,
     batch=32,
     ticks=(14, 34),
     learning_rate=1e-3,
@@ -129,7 +137,7 @@ FULL = Recipe(
     switch=0.3,
     state_shuffle=0.05,
     away=0.1,
-    undisturbed_pool=128,
+    undisturbed_pool=384,
     undisturbed_batch=12,
     undisturbed_ticks=(200, 20_000),
     refresh_every=500,
@@ -142,12 +150,14 @@ FULL = Recipe(
     stale=0.5,
     max_stale=0.7,
     stretch=10.0,
-    stretched=0.28,
-    damaged=0.2,
-    unknown=0.27,
+    stretched=0.1,
+    varied=0.38,
+    damaged=0.11,
+    unknown=0.18,
+    unlabelled=0.06,
     ramp=(0.05, 0.2),
     failure_weighting=0.6,
-    check_every=4_000,
+    check_every=10_000,
     validation_runs=500,
 )
 
@@ -162,6 +172,9 @@ RECIPES: dict[str, Recipe] = {
         stretched=0.4,
         damaged=0.0,
         unknown=0.0,
+        unlabelled=0.0,
+        library=2000,
+        undisturbed_pool=128,
         check_every=1_000,
         validation_runs=100,
     ),
@@ -190,6 +203,7 @@ RECIPES: dict[str, Recipe] = {
         refresh_every=15,
         refresh_steps=(5, 20),
         trials=5,
+        library=60,
         stretch=1.5,
         check_every=20,
         validation_runs=2,

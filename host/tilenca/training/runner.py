@@ -21,6 +21,7 @@ from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.sizes import Sizes
+from tilenca.shapes.variant import CHOOSING
 from tilenca.simulator.engine import FastEngine
 from tilenca.training.curriculum import build
 from tilenca.training.progress import Progress, Tell
@@ -86,7 +87,7 @@ def train(job: Job, tell: Tell) -> Trained:
         trainer = make_trainer(job)
         recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
         check: tuple[int, int, float] | None = None
-        suite = make_suite(job.task, job.sizes, job.config.labels, aims_of(recipe), job.config.seed)
+        suite = make_suite(job.task, job.sizes, job.config.labels, aims_of(recipe), job.config.seed, CHOOSING)
         while not trainer.done:
             trainer.step()
             if recipe.check_every and trainer.iteration % recipe.check_every == 0:

@@ -20,7 +20,7 @@ from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.curriculum import Curriculum
-from tilenca.training.loss import Goal, loss_of, scores_of
+from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
@@ -100,7 +100,6 @@ class Trainer:
 
     def __init__(self, config: Config, curriculum: Curriculum, device: torch.device) -> None:
         self.config = config
-        self.drawings = curriculum.drawings
         self.device = device
         self.random = np.random.default_rng(config.seed)
         self.net = TileNet(
@@ -150,6 +149,7 @@ class Trainer:
             torch.from_numpy(array).to(self.device)
             for array in (batch.target, taken.counted[batch.sample], taken.converged[batch.sample])
         )
+        target = agreed_targets(scores_of(end, len(self.config.labels)), target, batch.starts)
         goal = Goal(len(self.config.labels), target, counted, converged)
         loss = loss_of(start, end, goal, recipe.stability_penalty)
 
@@ -199,8 +199,10 @@ class Trainer:
     def _refresh_pools(self) -> None:
         model, _ = model_of(self.now(), {})
         recipe = self.config.recipe
-        refresh_undisturbed(model, self.pools.undisturbed, self.drawings, recipe.refresh_steps, self.random)
-        mine_hard_examples(model, self.pools, recipe.trials, self.random)
+        pools = self.pools
+        pools.renew()
+        refresh_undisturbed(model, pools.undisturbed, pools.drawings, recipe.refresh_steps, self.random)
+        mine_hard_examples(model, pools, recipe.trials, self.random)
 
     def now(self) -> Trained:
         """The result so far."""

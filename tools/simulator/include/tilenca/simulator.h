@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 // Grows with every change after which callers must be compiled or written anew.
-enum { TILENCA_SIMULATOR_ABI_VERSION = 1 };
+enum { TILENCA_SIMULATOR_ABI_VERSION = 2 };
 
 // The integer weights of a network 5 C -> H1 -> H2 -> C (docs/PROTOCOL.md section 4), [output][input].
 typedef struct tilenca_model {
@@ -38,8 +38,23 @@ typedef struct tilenca_model {
 // and comes back).
 enum { TILENCA_FAULT_NONE, TILENCA_FAULT_DEAD, TILENCA_FAULT_STUCK, TILENCA_FAULT_AWAY };
 
+// Which cells update when, and when their messages arrive. Halves: twice a step a random half of the cells
+// updates, and its messages arrive at once. Clocks: every tile has its own phase, period and latency, as
+// docs/PROTOCOL.md says. Listing: as in the paper's listing, in each step of a run of n cells one cell after
+// another is drawn, n times, with replacement; it updates, and its neighbours have its message at once.
+enum { TILENCA_SCHEDULE_HALVES, TILENCA_SCHEDULE_CLOCKS, TILENCA_SCHEDULE_LISTING };
+
 // Steps on clocks are counted in ticks, and times in parts of a tick, so that clocks drift in whole numbers.
 enum { TILENCA_TICKS = 20, TILENCA_UNITS_PER_TICK = 65536 };
+
+// A tile is put down or taken away at the beginning of a step. One that is put down is in the seed state,
+// sends it, and counts from then on; one that is taken away counts no more. If it is there already, or not
+// there, nothing happens.
+typedef struct tilenca_change {
+    int32_t step; // from 0
+    int32_t cell;
+    int32_t on; // 1: put down; 0: taken away
+} tilenca_change;
 
 // The runs, and their conditions.
 typedef struct tilenca_setup {
@@ -47,21 +62,26 @@ typedef struct tilenca_setup {
     int32_t cells;
     const int32_t* starts;     // [runs + 1], the first cell of each run, and `cells`
     const int32_t* neighbours; // [cells][4], N E S W, of the same run; `cells` for none
-    const uint8_t* alive;      // [cells], 0: never there
+    const uint8_t* alive;      // [cells], 0: not there, unless a change puts it down
     const int8_t* target;      // [cells], the class that is right
     const uint64_t* seeds;     // [runs]
     uint64_t loss;             // of 2^32 messages so many are lost
     uint8_t zeros;             // a lost message reads as zeros; else the last one is held
-    uint8_t clocks;            // every tile on its own clock; else twice a step a random half of the cells
+    uint8_t schedule;          // TILENCA_SCHEDULE_...
     // On clocks, in units; other schedules read none of these.
-    int64_t start;          // when the first tile is switched on, a whole number of ticks, not above 0
-    const int64_t* first;   // [cells], when each updates for the first time
-    const int64_t* period;  // [cells], above 0
-    const int64_t* latency; // [cells], from 0, below the cell's period
-    uint8_t fault;          // TILENCA_FAULT_...
-    const int32_t* faulty;  // [runs], a cell of the run, or -1 for none; not read without a fault
-    int64_t begin;          // the first step of the fault; 0: it is there before all others start
-    int64_t end;            // the step at which a tile that was away is back, in the seed state
+    uint8_t running; // all tiles run already, and their neighbours have their messages
+    int64_t start;   // when the first tile is switched on, a whole number of ticks, not above 0
+    // [cells], when each updates for the first time. Unless all are running, it is switched on one period
+    // before that, and sends its seed state then.
+    const int64_t* first;
+    const int64_t* period;         // [cells], above 0
+    const int64_t* latency;        // [cells], from 0, below the cell's period
+    uint8_t fault;                 // TILENCA_FAULT_...
+    const int32_t* faulty;         // [runs], a cell of the run, or -1 for none; not read without a fault
+    int64_t begin;                 // the first step of the fault; 0: it is there before all others start
+    int64_t end;                   // the step at which a tile that was away is back, in the seed state
+    const tilenca_change* changes; // [changes_count], in the order of their steps
+    int32_t changes_count;
 } tilenca_setup;
 
 typedef struct tilenca_event {
@@ -72,7 +92,7 @@ typedef struct tilenca_event {
 // What happens in a tick, in this order.
 typedef struct tilenca_tick {
     const int32_t* switched_off;     // cells that fall silent and dark
-    const int32_t* switched_on;      // cells that are back in the seed state, and have no messages yet
+    const int32_t* switched_on;      // cells that are switched on in the seed state, and have no messages yet
     const tilenca_event* deliveries; // the cell's message of now arrives at these sides
     const tilenca_event* updates;    // the cell updates, and reads zeros for these sides
     int32_t switched_off_count;
@@ -112,7 +132,7 @@ TILENCA_API tilenca_grid_batch* tilenca_grid_batch_new(const tilenca_model* mode
 // Null is allowed.
 TILENCA_API void tilenca_grid_batch_free(tilenca_grid_batch* batch);
 // Goes on for some steps. `right` [steps][runs] receives the share of tiles that are right after each step,
-// of those that are counted: not the dead, the stuck and those that never were. `shown` [steps][cells]
+// of those that are counted: not the dead, the stuck and those that are not there. `shown` [steps][cells]
 // receives what each shows; null: not wanted. `threads`, from 1, change nothing but the time it takes.
 TILENCA_API int tilenca_grid_batch_run(tilenca_grid_batch* batch, int32_t steps, int32_t threads,
                                        float* right, int8_t* shown);

@@ -5,16 +5,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca.base import paths
-from tilenca.shapes import variants
+from tilenca.shapes import edits
 from tilenca.shapes.cells import cells_of, connected
+from tilenca.shapes.edits import Known
 from tilenca.shapes.file import load_task
 from tilenca.shapes.stretch import stretch
-from tilenca.shapes.variants import Known
 
 SHAPES = load_task(paths.DEFAULT_SHAPES).shapes
 DIGITS = {shape.label: shape.rows for shape in SHAPES}
 KNOWN = Known((shape.label, shape.rows) for shape in SHAPES)
-SEGMENTS = variants.segments([shape.rows for shape in SHAPES])
+SEGMENTS = edits.segments([shape.rows for shape in SHAPES])
 
 
 def test_damage_that_makes_another_digit_is_left_out() -> None:
@@ -41,7 +41,7 @@ def test_a_digit_is_known_at_any_size_and_with_one_tile_too_many_or_missing() ->
             grown = stretch(rows, *size)
             assert grown is not None
             assert KNOWN.is_known(grown), label
-    for less in variants.without_one(DIGITS["2"]):
+    for less in edits.without_one(DIGITS["2"]):
         assert KNOWN.is_known(less)
     assert KNOWN.is_known(("####", "...#", "####", "#..#", "####")), "a 2 with a tile too many"
     assert not KNOWN.is_known(("####", "#...", "####", "#...", "#...")), "an F is no digit"
@@ -54,7 +54,7 @@ def test_the_segments_of_the_digits_are_the_seven_of_the_display() -> None:
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 24))
 def test_random_drawings_hang_together_and_have_their_number_of_tiles(seed: int, tiles: int) -> None:
-    rows = variants.grown(np.random.default_rng(seed), tiles, 5, 6)
+    rows = edits.grown(np.random.default_rng(seed), tiles, 5, 6)
     assert connected(cells_of(rows))
     assert len(cells_of(rows)) == tiles
     assert len(rows) <= 5
@@ -63,7 +63,7 @@ def test_random_drawings_hang_together_and_have_their_number_of_tiles(seed: int,
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from(sorted(DIGITS)))
 def test_a_half_is_a_connected_half(seed: int, label: str) -> None:
-    rows = variants.half(np.random.default_rng(seed), DIGITS[label])
+    rows = edits.half(np.random.default_rng(seed), DIGITS[label])
     assert connected(cells_of(rows))
     assert len(cells_of(rows)) == len(cells_of(DIGITS[label])) // 2
 
@@ -71,19 +71,13 @@ def test_a_half_is_a_connected_half(seed: int, label: str) -> None:
 @given(st.integers(0, 2**32 - 1))
 def test_choices_of_strokes_and_edited_drawings_hang_together(seed: int) -> None:
     random = np.random.default_rng(seed)
-    for rows in (variants.some_segments(random, SEGMENTS), variants.edited(random, DIGITS["5"], 3)):
+    for rows in (edits.some_segments(random, SEGMENTS), edits.edited(random, DIGITS["5"], 3)):
         assert rows is None or connected(cells_of(rows))
 
 
 def test_drawing_ends_where_there_are_no_more_drawings() -> None:
     random = np.random.default_rng(1)
-    found = variants.draw_until(
-        1000, lambda: variants.some_segments(random, SEGMENTS), lambda rows: not KNOWN.is_known(rows)
+    found = edits.draw_until(
+        1000, lambda: edits.some_segments(random, SEGMENTS), lambda rows: not KNOWN.is_known(rows)
     )
     assert len(found) == len(set(found)) == 43  # all there are
-
-
-def test_a_quarter_of_the_unknown_drawings_is_held_out_wherever_they_are_drawn() -> None:
-    random = np.random.default_rng(2)
-    drawings = [variants.grown(random, 9, 6, 6) for _ in range(2000)]
-    assert 0.2 < np.mean([variants.held_out(rows) for rows in drawings]) < 0.3

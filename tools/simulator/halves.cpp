@@ -1,17 +1,27 @@
-#include "sampler.h"
+#include "halves.h"
 
 #include <algorithm>
 
+#include "core/link.h"
+
 namespace tilenca {
 
-Sampler::Sampler(const tilenca_setup& setup, int first, int last)
-    : Schedule(setup, first, last, 2, 0), sent_(on_.size()) {
+namespace {
+
+constexpr int kHalves = 2; // ticks of a step
+
+} // namespace
+
+Halves::Halves(const tilenca_setup& setup, int first, int last)
+    : Schedule(setup, first, last, kHalves, 0, kSilentPeriods * kHalves), sent_(on_.size()) {
     for (int cell = 0; cell < cells(); ++cell) {
-        sending_.push_back(cell); // every cell sends what it starts from
+        if (on_[cell]) {
+            sending_.push_back(cell); // every cell sends what it starts from
+        }
     }
 }
 
-void Sampler::plan(Tick& tick) {
+void Halves::plan(Tick& tick) {
     deliver(tick);
     sending_.clear();
     for (size_t run = 0; run < random_.size(); ++run) {
@@ -32,7 +42,7 @@ void Sampler::plan(Tick& tick) {
     }
 }
 
-void Sampler::deliver(Tick& tick) {
+void Halves::deliver(Tick& tick) {
     if (links_.tracks_silence()) {
         // A cell that skips its turn is not silent: its last message still is its state.
         std::fill(sent_.begin(), sent_.end(), 0);

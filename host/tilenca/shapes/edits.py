@@ -121,11 +121,6 @@ def some_segments(random: np.random.Generator, strokes: Sequence[frozenset[Cell]
     return rows_of(tiles) if tiles and connected(tiles) else None
 
 
-def held_out(rows: Rows) -> bool:
-    """Whether a drawing of no class is kept from training for measurements: a quarter of all, by content."""
-    return sum(index * ord(mark) for index, mark in enumerate("/".join(rows), start=1)) % 4 == 0
-
-
 def draw_until(wanted: int, draw: Callable[[], Rows | None], fits: Callable[[Rows], bool]) -> list[Rows]:
     """Draws until `wanted` different drawings fit, or until `GIVE_UP` draws in a row bring nothing new."""
     seen: set[Rows] = set()

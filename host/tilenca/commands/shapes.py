@@ -1,0 +1,151 @@
+"""`tilenca shapes`: draws and checks a shape file, and what its classes may become, without any training."""
+
+import argparse
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.base.stdio import warn
+from tilenca.commands.arguments import number, seed, size, whole
+from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
+from tilenca.shapes.batch import Drawings, load_training_task
+from tilenca.shapes.file import Shape, load_task
+from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
+from tilenca.shapes.image import cropped, drawing_of, read_image
+from tilenca.shapes.sizes import LARGEST, Size
+from tilenca.shapes.variant import TRAINED
+from tilenca.views.drawings import half_blocks, side_by_side
+
+TRIES = 50  # for each variant
+IMAGE_ROWS = 10
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    parser.add_argument(
+        "shapes",
+        type=Path,
+        nargs="?",
+        default=paths.DEFAULT_SHAPES,
+        metavar="FILE",
+        help="a shape file (shapes/digits.toml)",
+    )
+    parser.add_argument(
+        "--vary",
+        type=whole(1, 1000),
+        nargs="?",
+        const=8,
+        metavar="N",
+        help="draw N variants of every class too, as training draws them (8)",
+    )
+    parser.add_argument(
+        "--seed", type=seed, default=1, metavar="N", help="same seed, same variants (default 1)"
+    )
+    picture = parser.add_argument_group("picture", "instead: a picture becomes a drawing")
+    picture.add_argument(
+        "--image",
+        type=Path,
+        metavar="FILE",
+        help="a picture of one sign, such as a PNG: dark ink on light paper, or light on dark; the largest "
+        "connected part becomes a [[shape]] table, to add to a shape file",
+    )
+    picture.add_argument("--size", type=size, metavar="RxC", help=f"rows x columns ({IMAGE_ROWS} rows)")
+    picture.add_argument("--label", default="?", metavar="L", help="what it means")
+    picture.add_argument(
+        "--ink",
+        type=number(0, 1),
+        default=0.5,
+        metavar="P",
+        help="least part of a tile that is ink, 0 to 1 (0.5)",
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Draws, and says what to know before training."""
+    if args.image is not None:
+        return _image(args)
+    task = load_task(args.shapes)
+    drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
+    variants = _variants(drawings, args.vary, args.seed, args.shapes) if args.vary else {}
+    problems = _problems(task.labels)
+    if args.json:
+        report: dict[str, Any] = {"shapes": [_entry(shape) for shape in task.shapes], "problems": problems}
+        if args.vary:
+            report["variants"] = {
+                label: ["\n".join(rows) for rows in some] for label, some in variants.items()
+            }
+        print(json.dumps(report))
+        return 0
+    width = shutil.get_terminal_size().columns
+    titled = [(f"{s.name} {len(s.rows)}x{len(s.rows[0])}", s.rows) for s in task.shapes]
+    print("\n".join(side_by_side(titled, width)))
+    for label, some in variants.items():
+        print(f"{label} may become")
+        print("\n".join(side_by_side([("", rows) for rows in some], width)))
+    print(f"{len(task.shapes)} drawings of {len(task.labels)} classes: {' '.join(task.labels)}")
+    for problem in problems:
+        print(problem)
+    return 0
+
+
+def _image(args: argparse.Namespace) -> int:
+    """Prints the drawing of a picture as a table of a shape file, and shows it."""
+    ink = cropped(read_image(args.image))
+    rows = drawing_of(ink, args.size or _kept_proportions(ink.shape), args.ink)
+    if not rows:
+        raise UsageError(f"{args.image}: no tile has that much ink; give a smaller --ink, or another --size")
+    grid = "\n".join(rows)
+    if args.json:
+        print(json.dumps({"label": args.label, "rows": len(rows), "cols": len(rows[0]), "grid": grid}))
+        return 0
+    warn("\n".join(half_blocks(rows)))
+    warn(f"{grid.count('#')} tiles in {len(rows)} rows and {len(rows[0])} columns; add this to a shape file:")
+    print(f'[[shape]]\nlabel = "{args.label}"\ngrid = """\n{grid}\n"""')
+    return 0
+
+
+def _kept_proportions(pixels: tuple[int, ...]) -> Size:
+    return IMAGE_ROWS, max(1, min(LARGEST, round(IMAGE_ROWS * pixels[1] / pixels[0])))
+
+
+def _entry(shape: Shape) -> dict[str, Any]:
+    lit = [name for bit, name in enumerate(SEGMENT_NAMES) if GLYPHS[shape.label] >> bit & 1]
+    return {
+        "label": shape.label,
+        "rows": len(shape.rows),
+        "cols": len(shape.rows[0]),
+        "tiles": len(shape.cells),
+        "display": "".join(lit),
+    }
+
+
+def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[str, list[tuple[str, ...]]]:
+    """Some variants of every class, as training draws them."""
+    if drawings.variants is None:
+        raise UsageError(f"{path}: says vary = false, so its classes are just its drawings; leave --vary out")
+    random = np.random.default_rng(number)
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for label in drawings.labels:
+        some = found.setdefault(label, [])
+        for _ in range(TRIES * count):
+            variant = drawings.variants.draw(label, TRAINED, random)
+            if variant is not None and variant.rows not in some:
+                some.append(variant.rows)
+            if len(some) == count:
+                break
+    return found
+
+
+def _problems(labels: tuple[str, ...]) -> list[str]:
+    most = Dimensions(DEFAULT_CHANNELS, 1, 1).max_classes
+    if len(labels) <= most:
+        return []
+    return [
+        f"{len(labels)} classes are more than the default state holds ({most}): train with a wider --state"
+    ]
