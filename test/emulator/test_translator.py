@@ -1,5 +1,6 @@
 """Translated blocks do what the interpreter does, to the byte."""
 
+import os
 import random
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator import Array
 from tilenca.emulator.translation import SETTING, path_of
-from tilenca.emulator.translator import make
+from tilenca.emulator.translator import MOST_KEPT, make
 
 
 @pytest.fixture(autouse=True)
@@ -172,6 +173,17 @@ def test_without_a_compiler_there_is_no_translation(
     array = Array(elf)
     array.run(0.001)
     assert not array.is_translated
+
+
+def test_translations_of_other_builds_do_not_pile_up(avr: Compile, translations: Path) -> None:
+    translations.mkdir()
+    for number in range(MOST_KEPT + 5):
+        old = translations / f"{number}.so"
+        old.touch()
+        os.utime(old, (number, number))
+    made = make(avr("int main(void) { for (;;) { } }"))
+    left = {path.name for path in translations.glob("*.so")}
+    assert left == {made.name, *(f"{number}.so" for number in range(6, MOST_KEPT + 5))}
 
 
 def test_the_module_prints_where_it_put_the_translation(avr: Compile) -> None:

@@ -21,6 +21,7 @@ from tilenca.emulator.translation import FLAGS, SETTING, compiler, path_of
 # What is counted: a block of tiles of this size, for so long.
 ROWS = COLUMNS = 3
 COUNTED_S = 0.6
+MOST_KEPT = 20
 
 
 def source_of(image: Path) -> str:
@@ -62,7 +63,16 @@ def make(image: Path) -> Path:
         if done.returncode != 0:
             raise BuildError(f"{image}: its translation does not compile: {done.stderr.strip()[:200]}")
         library.replace(path)
+    _forget_old(path.parent)
     return path
+
+
+def _forget_old(place: Path) -> None:
+    """Removes all but the newest translations; those of other builds are never used again."""
+    with suppress(OSError):
+        newest_first = sorted(place.glob("*.so"), key=lambda path: path.stat().st_mtime, reverse=True)
+        for path in newest_first[MOST_KEPT:]:
+            path.unlink(missing_ok=True)
 
 
 def _make_alone(image: Path) -> None:
