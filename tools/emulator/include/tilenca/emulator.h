@@ -79,8 +79,8 @@ TILENCA_API int tilenca_array_size(tilenca_array* array);
 TILENCA_API int tilenca_array_add_tile(tilenca_array* array, double ppm, double switch_on_s);
 // Switches a tile off for good and takes its cables away. The others keep their indices, and so does it.
 TILENCA_API int tilenca_array_remove_tile(tilenca_array* array, unsigned tile);
-// How long a cable takes, 20 us to 260 us (usually the most); before the array runs. Tiles run in turns that are
-// a little shorter: longer ones cost less. A snapshot brings its own along.
+// How long a cable takes, 20 us to 260 us (usually the most); before the array runs. Tiles run in turns that
+// are a little shorter: longer ones cost less. A snapshot brings its own along.
 TILENCA_API int tilenca_array_set_cable_delay(tilenca_array* array, double seconds);
 // How many threads share the work, 1 to 1024. They change how long it takes, and nothing else.
 TILENCA_API int tilenca_array_set_threads(tilenca_array* array, unsigned threads);

@@ -40,6 +40,18 @@ TILENCA_EFFECT uint32_t status(uint32_t carry, uint32_t zero, uint32_t nvh, bool
            uint32_t{is_half(nvh)} << 5 | uint32_t{transfer} << 6 | uint32_t{interrupts} << 7;
 }
 
+// Of a value that a program writes to SREG: C and Z as above, and N, V, H and S.
+TILENCA_EFFECT uint32_t carry_of(uint32_t status) {
+    return status & 1;
+}
+TILENCA_EFFECT uint32_t zero_of(uint32_t status) {
+    return (status & 2) == 0;
+}
+TILENCA_EFFECT uint32_t nvh_of(uint32_t status) {
+    const uint32_t sign_differs = (status >> 4 ^ status >> 3 ^ status >> 2) & 1;
+    return pack((status & 4) << 5, (status & 8) << 4, (status & 0x20) >> 1) | sign_differs << 31;
+}
+
 // --- two operands ---
 
 TILENCA_EFFECT uint32_t add(uint32_t d, uint32_t s, uint32_t carry_in, uint32_t& carry, uint32_t& zero,

@@ -7,12 +7,12 @@ namespace {
 // The bits must be asked for in order.
 bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
     const double last = sampling.decided(bit);
-    const auto sample = [&](int back) { return static_cast<uint64_t>(last - back * sampling.period); };
-    const bool first = line.at(sample(2));
-    if (line.stays_until(sample(0))) {
+    const bool first = line.at(static_cast<uint64_t>(last - 2 * sampling.period));
+    const auto end = static_cast<uint64_t>(last);
+    if (line.stays_until(end)) {
         return first;
     }
-    const bool second = line.at(sample(1)), third = line.at(sample(0));
+    const bool second = line.at(static_cast<uint64_t>(last - sampling.period)), third = line.at(end);
     return first + second + third >= 2;
 }
 

@@ -82,11 +82,9 @@ inline uint8_t Cpu::status(uint32_t with_carry, uint32_t with_zero, uint32_t wit
 }
 
 inline void Cpu::set_status(uint8_t value) {
-    carry = value & 1;
-    zero = (value & 2) == 0;
-    const bool sign_differs = ((value >> 4 ^ value >> 3 ^ value >> 2) & 1) != 0;
-    nvh = ops::pack((value & 4u) << 5, (value & 8u) << 4, (value & 0x20u) >> 1) | uint32_t{sign_differs}
-                                                                                      << 31;
+    carry = effects::carry_of(value);
+    zero = effects::zero_of(value);
+    nvh = effects::nvh_of(value);
     transfer = (value & 0x40) != 0;
     interrupts_on = (value & 0x80) != 0;
 }

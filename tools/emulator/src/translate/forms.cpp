@@ -26,6 +26,9 @@ using namespace avr::ops;
 #define TILENCA_DOWN_THEN(pointer, low, high)                                                                \
     "a = ((" pointer ") - 1) & 0xFFFF; %s " low " = a & 0xFF; " high " = a >> 8; "
 #define TILENCA_LOAD "%d = DATA(a);"
+#define TILENCA_FIND_RETURN "a = sp + 1; %s a = sp + 3; %s "
+#define TILENCA_POP_RETURN                                                                                   \
+    "w = DATA(sp + 1) << 16 | DATA(sp + 2) << 8 | DATA(sp + 3); sp = (sp + 3) & 0xFFFF;"
 #define TILENCA_STORE "DATA(a) = static_cast<uint8_t>(%d);"
 
 // The handler's address tells the instruction.
@@ -140,12 +143,17 @@ const std::unordered_map<avr::Handler, Form>& forms() {
         {eijmp, {Kind::Dynamic, "w = DATA(0x5C) << 16 | " TILENCA_Z ";", 2}},
         {icall, {Kind::DynamicCall, "w = " TILENCA_Z ";", 4}},
         {eicall, {Kind::DynamicCall, "w = DATA(0x5C) << 16 | " TILENCA_Z ";", 4}},
-        {ret,
+        {ret, {Kind::Dynamic, TILENCA_FIND_RETURN TILENCA_POP_RETURN, 5}},
+        {reti,
          {Kind::Dynamic,
-          "a = sp + 1; %s a = sp + 3; %s w = DATA(sp + 1) << 16 | DATA(sp + 2) << 8 | DATA(sp + 3); "
-          "sp = (sp + 3) & 0xFFFF;",
+          TILENCA_FIND_RETURN
+          "INTERRUPTS = true; HELD_UNTIL = cycle + 5; if (REQUESTS != 0) LIMIT = 0; " TILENCA_POP_RETURN,
           5}},
-        {reti, {Kind::InterpretedEnd, "", 5}},
+        {out_status,
+         {Kind::Plain,
+          "w = %d; %i carry = carry_of(w); zero = zero_of(w); nvh = nvh_of(w); TRANSFER = (w & 0x40) != 0; "
+          "INTERRUPTS = (w & 0x80) != 0;",
+          1}},
         {sleep, {Kind::Interpreted, "", 1}},
         {illegal, {Kind::InterpretedEnd, "", 1}},
         {erased, {Kind::InterpretedEnd, "", 1}},
@@ -217,6 +225,9 @@ std::string filled(const Form& form, const avr::Instruction& in, const std::stri
             break;
         case 's':
             text += "if (RARE(!IS_SRAM(a))) " + leave;
+            break;
+        case 'i':
+            text += "if (RARE((w & 0x80) != 0 && !INTERRUPTS)) " + leave;
             break;
         case 'l':
             text += "if (RARE(a >= FLASH_LIMIT)) " + leave;

@@ -10,7 +10,7 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 1; // one more with every change of what is emitted
+constexpr unsigned kTextVersion = 2; // one more with every change of what is emitted
 
 // What comes after the places of the core's members and before the functions.
 constexpr const char* kPrelude = R"text(
@@ -28,7 +28,9 @@ struct Instruction {
 #define PASSED cpu, at, cycle, carry, zero, nvh
 #define MEMBER(type, place) (*reinterpret_cast<type*>(reinterpret_cast<char*>(cpu) + (place)))
 #define DATA(address) (reinterpret_cast<uint8_t*>(cpu)[address])
-#define LIMIT MEMBER(const uint64_t, AT_LIMIT)
+#define LIMIT MEMBER(uint64_t, AT_LIMIT)
+#define HELD_UNTIL MEMBER(uint64_t, AT_HELD_UNTIL)
+#define REQUESTS MEMBER(const uint64_t, AT_REQUESTS)
 #define TRANSFER MEMBER(bool, AT_TRANSFER)
 #define INTERRUPTS MEMBER(bool, AT_INTERRUPTS)
 #define FLASH MEMBER(const uint8_t* const, AT_FLASH)
@@ -72,6 +74,8 @@ std::string places() {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
     return define("AT_LIMIT", offsetof(avr::Cpu, limit)) +
+           define("AT_HELD_UNTIL", offsetof(avr::Cpu, held_until)) +
+           define("AT_REQUESTS", offsetof(avr::Cpu, requests)) +
            define("AT_TRANSFER", offsetof(avr::Cpu, transfer)) +
            define("AT_INTERRUPTS", offsetof(avr::Cpu, interrupts_on)) +
            define("AT_FLASH", offsetof(avr::Cpu, flash)) +
