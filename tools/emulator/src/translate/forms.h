@@ -1,10 +1,10 @@
 // What each instruction becomes in C++.
 //
 // A form is a line of C++ with gaps: %d and %r are the operands' registers, %D and %R the next higher ones,
-// %c and %m the constant and its complement, %k the address or displacement. %s, %l, %p and %i leave the block
-// where an address `a` is outside SRAM, one is beyond readable flash, a push is one to be looked at, or `w`
-// switches interrupts on: the interpreter then executes the instruction. Registers are variables r0 to r31
-// and sp.
+// %c and %m the constant and its complement, %k the address or displacement. %s, %l, %p and %i leave the
+// block where an address `a` is outside SRAM, one is beyond readable flash, a push is one to be looked at, or
+// `w` switches interrupts on: the interpreter then executes the instruction. Registers are variables r0 to
+// r31 and sp.
 #pragma once
 
 #include "avr/instruction.h"
