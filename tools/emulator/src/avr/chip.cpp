@@ -65,6 +65,9 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
         }
     }
     cpu_.special[kSpl] = cpu_.special[kSph] = kWritesThroughBus;
+    for (size_t slot = 0; slot < kSlots; slot++) {
+        at_slot_[slot] = &find_at_slot(static_cast<Slot>(slot));
+    }
     join();
     reset(ResetCause::PowerOn);
 }

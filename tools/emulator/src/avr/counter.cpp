@@ -72,6 +72,11 @@ bool Counter::is_settled() const {
 }
 
 void Counter::advance_far(uint64_t ticks) {
+    if (ticks == free_ticks_ && ticks != 0) { // as most events are: just there
+        step(ticks);
+        free_ticks_ = static_cast<uint32_t>(ticks_to_boundary());
+        return;
+    }
     while (ticks != 0 && !is_settled()) {
         ticks -= step(ticks);
     }
