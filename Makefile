@@ -20,6 +20,9 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \
 # A core directory of the user's own would hide the one of the set-up.
 unexport PLATFORMIO_CORE_DIR
 
+# Where this is set, every process of the many that tests start would compile the package again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
@@ -33,13 +36,13 @@ setup: setup-demo ## make this clone ready: system packages, .venv, C++ librarie
 
 setup-train: ## the same, with PyTorch for training
 setup-demo setup-train setup-test setup-check setup-docs:
-	@sh tools/setup/setup.sh $(@:setup-%=%)
+	@sh tools/setup/setup.sh $(@:setup-%=%) $(if $(filter setup%,$(MAKECMDGOALS)),--next)
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
 	@$(PIO) run -e $(ENV)
 	@$(TRANSLATE) $(ELF) &
 	@$(TILENCA) emulate --shape all
-	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch"
+	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch --seconds 10"
 
 test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from support import objects
 from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
+from support.order import rank
 from support.terminal import pty
 
 __all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
@@ -36,11 +38,12 @@ def pytest_configure() -> None:
         os.environ.pop(name, None)
     # What commands keep for their user is not to mix with what this user has.
     os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="tilenca-state-")
+    objects.share()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Puts the longest tests first: at the end, one would keep one processor busy and the others idle."""
-    items.sort(key=lambda item: item.get_closest_marker("soak") is None)
+    """Puts files with long tests first; all others keep their order."""
+    items.sort(key=lambda item: rank(item.path))
 
 
 @pytest.fixture(scope="session")

@@ -21,8 +21,16 @@ def test_every_command_has_help(command: str, capsys: pytest.CaptureFixture[str]
     assert f"tilenca {command}" in capsys.readouterr().out
 
 
+def test_without_a_command_it_lists_them(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    listed = [line.split()[0] for line in captured.out.splitlines() if line.startswith("    ")]
+    assert [name for name in listed if name in COMMANDS] == list(COMMANDS)
+
+
 @pytest.mark.parametrize(
-    "arguments", [[], ["no-such-command"], ["emulate", "--no-such-option"], ["emulate", "a\nb"]]
+    "arguments", [["--json"], ["no-such-command"], ["emulate", "--no-such-option"], ["emulate", "a\nb"]]
 )
 def test_a_usage_error_exits_with_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from support.order import LONG, rank
 from tilenca.base import paths
 
 PACKAGE, TESTS = paths.ROOT / "host" / "tilenca", paths.ROOT / "test"
@@ -27,3 +28,12 @@ def test_every_module_has_its_tests_where_its_name_says() -> None:
 
 def test_every_reason_is_given() -> None:
     assert [module for module, reason in WITHOUT.items() if len(reason.split()) < 3] == []
+
+
+def test_files_with_long_tests_begin_first() -> None:
+    assert [name for name in LONG if not (TESTS / name).is_file()] == [], (
+        "strike it off the list, or correct it"
+    )
+    ranks = [rank(TESTS / name) for name in LONG]
+    assert ranks == sorted(set(ranks))
+    assert ranks[-1] < rank(Path(__file__))

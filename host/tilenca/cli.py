@@ -100,6 +100,9 @@ def _activation() -> str:
 
 
 def _run(arguments: list[str]) -> int:
+    if not arguments:
+        build_parser().print_help()
+        return 0
     command = next((word for word in arguments if not word.startswith("-")), None)
     args = build_parser(command).parse_args(arguments)
     return int(importlib.import_module(COMMANDS[args.command][0]).run(args))

@@ -1,13 +1,19 @@
 """The values that commands take, and how wrong ones are refused."""
 
 import argparse
+import re
 from collections.abc import Callable
-from typing import Any
+from importlib import import_module
+from pathlib import Path
+from typing import Any, get_args
 
 import pytest
 
+from tilenca import cli
+from tilenca.base import paths
 from tilenca.commands import arguments
 from tilenca.commands.arguments import Parser, add_fleet_arguments
+from tilenca.simulator.conditions import ScheduleKind
 
 
 @pytest.mark.parametrize(
@@ -80,3 +86,28 @@ def test_ports_add_up_and_none_is_the_default() -> None:
     assert parser.parse_args([]).port == []
     found = parser.parse_args(["--port", "/dev/a", "--port", "/dev/b*", "--tiles", "f.toml"])
     assert (found.port, str(found.tiles)) == (["/dev/a", "/dev/b*"], "f.toml")
+
+
+@pytest.mark.parametrize(("option", "fits"), [("--shapes", "shapes/hex.toml"), ("--model", "models/hex")])
+def test_what_comes_with_tilenca_has_a_short_name_in_every_command_from_any_folder(
+    option: str, fits: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    takers = []
+    for command in cli.COMMANDS:
+        parser = Parser()
+        import_module(cli.COMMANDS[command][0]).add_arguments(parser)
+        if f"\n  {option} " not in parser.format_help():
+            continue
+        takers.append(command)
+        needed = ["--out", "mine"] if command == "train" else []
+        value = getattr(parser.parse_args([*needed, option, "hex"]), option[2:])
+        assert value in (paths.ROOT / fits, [paths.ROOT / fits]), command
+        assert re.search(
+            r"one\s+of:\s+digits\s.*\bhex\b.*\bpentominoes\b", parser.format_help(), re.DOTALL
+        ), command
+    assert {"evaluate", "plot", "simulate"} <= set(takers)
+
+
+def test_every_schedule_of_the_simulator_can_be_asked_for() -> None:
+    assert sorted(arguments.SCHEDULES) == sorted(get_args(ScheduleKind))

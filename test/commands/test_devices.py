@@ -34,6 +34,14 @@ def test_a_named_port_that_is_missing_is_told_and_stops_no_other(
     assert captured.err == f"{missing}: no such port\n"
 
 
+def test_the_list_says_how_to_ask_the_tiles(pty: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["devices", "--port", pty]) == 0
+    captured = capsys.readouterr()
+    assert captured.out.splitlines()[1].startswith(pty)
+    [hint] = captured.err.splitlines()
+    assert hint.startswith("next: tilenca devices --ask asks each tile for its id and firmware")
+
+
 @pytest.mark.parametrize("command", ["devices", "flash", "monitor"])
 @pytest.mark.parametrize("pattern", ["ttyACM*", "ttyACM0"])
 def test_no_device_exits_with_3_and_a_remedy(

@@ -228,7 +228,7 @@ def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
     assert "RECEIVED" in picture
     for tile in tiles:
         row = next(line for line in reversed(picture.splitlines()) if line.startswith(tile.port))
-        assert row.split()[:6] == [tile.port, str(tile.tile), "7", "1", "0", "s"]
+        assert row.split()[:7] == [tile.port, str(tile.tile), "7", "30", "1", "0", "s"]
 
 
 @pytest.mark.parametrize("table", [["--table"], []])

@@ -49,3 +49,14 @@ def test_lookalikes_are_announced(tmp_path: Path, capsys: pytest.CaptureFixture[
     said = capsys.readouterr().err
     assert "training 40 iterations on" in said
     assert "with the wrong tile missing one looks like another" in said
+
+
+@pytest.mark.parametrize(("recipe", "measures"), [("full", True), ("paper", False)])
+def test_the_words_of_the_progress_line_are_explained(
+    recipe: str, measures: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = make_plan(arguments(tmp_path, "--recipe", recipe))
+    announce(plan, cost.check(plan.dimensions, len(plan.task.labels)))
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith("progress: the loss, the share of drawings with every tile right, ")
+    assert ("how many targets of the model card are met" in last) == measures

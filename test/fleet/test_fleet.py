@@ -3,7 +3,6 @@
 import json
 import os
 import pty
-import select
 import signal
 import subprocess
 import sys
@@ -13,16 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from support.alone import alone
 from support.intel_hex import image
 from support.lab import Lab
-from tilenca.base import paths
+from support.terminal import read_until
 from tilenca.fleet.image import check_image
 from tilenca.fleet.tiles_file import read_tiles
 
 # Only a hang takes so long; a busy machine may take minutes for what takes an idle one seconds.
 LIMIT_S = 1200
-SCREENFULS = 2_000_000
 ROWS = ["####"] * 5
 
 
@@ -54,16 +51,6 @@ def tilenca(lab: Lab, *arguments: str, status: int = 0, typed: str = "") -> subp
     return done
 
 
-def read_until(screen: int, wanted: str) -> None:
-    """Reads a terminal until it shows something; fails if it does not, or shows a lot else before."""
-    seen = ""
-    while wanted not in seen:
-        ready, _, _ = select.select([screen], [], [], LIMIT_S)
-        assert ready, f"no {wanted!r} after {seen!r}"
-        seen += os.read(screen, 65536).decode("utf-8", "replace")
-        assert len(seen) < SCREENFULS, f"no {wanted!r} in {seen[:500]!r}"
-
-
 def results(done: subprocess.CompletedProcess[str]) -> list[str]:
     return [tile["result"] for tile in json.loads(done.stdout)["tiles"]]
 
@@ -75,12 +62,14 @@ def test_the_tiles_say_who_they_are_and_where_they_lie(lab: Lab) -> None:
     assert places == {4 * row + col + 1: (row, col) for row in range(5) for col in range(4)}
 
 
-def test_twenty_take_no_longer_than_one_and_who_has_the_image_is_skipped(lab: Lab, firmware: Path) -> None:
+def test_twenty_take_no_longer_than_one_and_who_has_the_image_is_skipped(
+    lab: Lab, lone_tile: Lab, firmware: Path
+) -> None:
     ours = check_image(firmware.with_suffix(".hex"))
     flash = ["flash", "--json", "--hex", str(ours.path)]
-    lab.talks_s.clear()
-    tilenca(lab, *flash, "--force", "--only", "1")
-    one_s = lab.talks_s[-1] - lab.talks_s[0]
+    lone_tile.talks_s.clear()
+    tilenca(lone_tile, *flash, "--force", "--port", lone_tile.port(1))
+    one_s = lone_tile.talks_s[-1] - lone_tile.talks_s[0]
     lab.talks_s.clear()
     done = tilenca(lab, *flash, "--force")
     twenty_s = lab.talks_s[-1] - lab.talks_s[0]
@@ -212,32 +201,3 @@ def test_the_monitor_draws_the_lab_and_survives_unplug_and_replug(lab: Lab) -> N
     os.close(screen)
     assert monitor.returncode == 130
     assert b"Traceback" not in chatter
-
-
-def test_platformio_uploads_to_one_tile_and_monitors_it(lab: Lab) -> None:
-    pio = Path(sys.executable).with_name("pio")
-    port = lab.port(9)
-    with alone("pio"):
-        uploaded = subprocess.run(
-            [pio, "run", "-e", paths.FIRMWARE_ENV, "-t", "upload", "--upload-port", port],
-            cwd=paths.ROOT,
-            capture_output=True,
-            text=True,
-            timeout=LIMIT_S,
-            check=False,
-        )
-    assert uploaded.returncode == 0, uploaded.stderr
-    assert "bytes of flash verified" in uploaded.stderr
-    keyboard, inside = pty.openpty()
-    monitor = subprocess.Popen(
-        [pio, "device", "monitor", "--port", port, "-f", "direct"],
-        cwd=paths.ROOT,
-        stdin=inside,
-        stdout=inside,
-        stderr=inside,
-    )
-    read_until(keyboard, "$TILE,9,")
-    os.write(keyboard, b"\x03")
-    monitor.wait(LIMIT_S)
-    os.close(inside)
-    os.close(keyboard)

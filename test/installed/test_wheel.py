@@ -1,5 +1,6 @@
 """The wheel in an empty environment and an empty folder: all that needs no compiler works there."""
 
+import io
 import json
 import os
 import re
@@ -9,12 +10,16 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import pytest
+from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import NoteSection
 from packaging.requirements import Requirement
 
 from release.wheel import make
+from setup import native
+from support import objects
 from support.empty_environment import EmptyEnvironment
 from tilenca import __version__
 from tilenca.base import paths
@@ -94,6 +99,23 @@ def test_it_carries_the_data_and_nothing_by_the_way(wheel: Path) -> None:
             assert archive.read(f"tilenca/data/image/firmware{suffix}") == built
 
 
+def build_id(library: BinaryIO) -> str:
+    """The linker's sum of a library's content; what is stripped from it later does not change it."""
+    section = ELFFile(library).get_section_by_name(".note.gnu.build-id")
+    assert isinstance(section, NoteSection)
+    [note] = section.iter_notes()
+    return str(note["n_desc"])
+
+
+def test_its_libraries_are_those_of_the_checkout(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        for name in ("emulator", "simulator", "rollout"):
+            file = f"libtilenca_{name}.so"
+            carried = io.BytesIO(archive.read(f"tilenca/lib/{file}"))
+            with (native.BUILD / file).open("rb") as built:
+                assert build_id(carried) == build_id(built)
+
+
 def test_without_the_firmware_no_wheel_is_built(tmp_path: Path) -> None:
     shutil.copy(paths.ROOT / "CMakeLists.txt", tmp_path)
     done = subprocess.run(
@@ -131,6 +153,8 @@ def test_a_model_is_simulated_and_measured(plain: EmptyEnvironment, tmp_path: Pa
     done = plain.run(tmp_path, "tilenca", "simulate", "--shape", "4", "--runs", "3", "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.splitlines()[0])
+    by_name = ["simulate", "--model", "hex", "--shapes", "hex", "--shape", "A", "--runs", "3", "--json"]
+    assert document(plain.run(tmp_path, "tilenca", *by_name))["file"] == "hex.toml"
     report = document(plain.run(tmp_path, "tilenca", "evaluate", "--runs", "3", "--json"))
     assert report["cells_right"] > 0.9
     (tmp_path / "one.toml").write_text(TWO_TILES, encoding="utf-8")
@@ -202,9 +226,10 @@ def test_with_its_extra_it_plots(training: EmptyEnvironment, tmp_path: Path) -> 
 
 def pio_environment() -> dict[str, str]:
     """PlatformIO comes from the tests' environment, and so do its packages."""
+    environment = os.environ | objects.environment()
     if (paths.ROOT / "platformio.local.ini").exists():
-        return {**os.environ, "PLATFORMIO_CORE_DIR": str(paths.BUILD / "platformio")}
-    return dict(os.environ)
+        environment["PLATFORMIO_CORE_DIR"] = str(paths.BUILD / "platformio")
+    return environment
 
 
 @pytest.mark.skipif(not PIO.exists(), reason="PlatformIO is not installed; run `make setup`")

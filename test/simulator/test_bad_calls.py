@@ -6,21 +6,18 @@ from typing import Any
 
 import pytest
 
+from support.c_structures import Structures
 from tilenca.base import native_library
-from tilenca.base.native_library import Library
 
 UNITS = 65536
 INT_MAX = 2**31 - 1
 
 
-class Given:
+class Given(Structures):
     """Two runs of two cells each, and a small model; single fields can be given another value."""
 
     def __init__(self) -> None:
-        self.library: Library = native_library.load("simulator")
-        self.ffi, self.lib = self.library.ffi, self.library.lib
-        self.null = self.ffi.NULL
-        self.alive: list[Any] = []  # memory that structures point to
+        super().__init__("simulator")
         self.model_fields: dict[str, Any] = {
             "channels": 4, "hidden1": 3, "hidden2": 2, "classes": 2,
             "w1": self.array("int8_t", [1] * 60), "b1": self.array("int16_t", [0] * 3),
@@ -44,17 +41,11 @@ class Given:
         self.shown = self.array("int8_t", [-1] * 4)
         self.right = self.array("float", [0.0] * 20)
 
-    def array(self, kind: str, values: list[Any]) -> Any:
-        self.alive.append(self.ffi.new(f"{kind}[]", values))
-        return self.alive[-1]
-
     def model(self, **other: Any) -> Any:
-        self.alive.append(self.ffi.new("tilenca_model*", self.model_fields | other))
-        return self.alive[-1]
+        return self.made("tilenca_model", self.model_fields, other)
 
     def setup(self, **other: Any) -> Any:
-        self.alive.append(self.ffi.new("tilenca_setup*", self.setup_fields | other))
-        return self.alive[-1]
+        return self.made("tilenca_setup", self.setup_fields, other)
 
     def batch(self, model: Any, setup: Any) -> Any:
         return self.lib.tilenca_grid_batch_new(model, setup, self.states, self.shown)
@@ -88,7 +79,7 @@ BAD_MODELS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("other", BAD_MODELS, ids=str)
 def test_a_model_that_cannot_be(given: Given, other: dict[str, Any]) -> None:
-    model = given.model(**{name: given.null if value is None else value for name, value in other.items()})
+    model = given.model(**other)
     fails(given, "grid_batch_new", model, given.setup(), given.states, given.shown)
     fails(given, "update_cells", model, given.states, given.shown, 1, 0)
     fails(given, "update_cells", model, given.states, given.shown, 1, 1)
@@ -124,24 +115,13 @@ BAD_SETUPS: list[dict[str, Any]] = [
     *({"period": [period] * 4} for period in (0, -1, 2**60)),
     *({"latency": [20 * UNITS] * 3 + [latency]} for latency in (20 * UNITS, -1, 2**62)),
 ]
-KINDS = {
-    "starts": "int32_t", "neighbours": "int32_t", "faulty": "int32_t",
-    "changes": "tilenca_change", "first": "int64_t", "period": "int64_t", "latency": "int64_t",
-}  # fmt: skip
 
 
 @pytest.mark.parametrize("other", BAD_SETUPS, ids=str)
 def test_a_setup_that_cannot_be(given: Given, other: dict[str, Any]) -> None:
-    fields = {
-        name: given.null
-        if value is None
-        else given.array(KINDS[name], value)
-        if isinstance(value, list)
-        else value
-        for name, value in other.items()
-    }
-    fails(given, "schedule_new", given.setup(**fields))
-    fails(given, "grid_batch_new", given.model(), given.setup(**fields), given.states, given.shown)
+    setup = given.setup(**other)
+    fails(given, "schedule_new", setup)
+    fails(given, "grid_batch_new", given.model(), setup, given.states, given.shown)
 
 
 def test_arrays_and_structures_that_are_missing(given: Given) -> None:

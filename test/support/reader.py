@@ -10,6 +10,7 @@ import sys
 from configparser import ConfigParser
 from pathlib import Path
 
+from support import objects
 from support.blocks import Block
 from tilenca import cli
 from tilenca.base import paths
@@ -31,7 +32,8 @@ class Reader:
         """Makes the folder look like a clone."""
         self._folder = folder
         self._background: list[tuple[str, subprocess.Popen[str]]] = []
-        self._environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        path = {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        self._environment = os.environ | path | objects.environment()
         for name in LINKED:
             (folder / name).symlink_to(paths.ROOT / name)
         (folder / "models").mkdir()

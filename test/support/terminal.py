@@ -2,6 +2,7 @@
 
 import os
 import re
+import select
 import sys
 import threading
 import tty
@@ -12,6 +13,8 @@ from pty import openpty
 import pytest
 
 LIMIT_S = 30
+READ_LIMIT_S = 1200  # only a hang takes so long
+SCREENFULS = 2_000_000  # characters
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
@@ -66,3 +69,13 @@ def stderr_on_terminal(monkeypatch: pytest.MonkeyPatch, width: int = 100) -> Ite
             yield screen
     finally:
         screen.close()
+
+
+def read_until(screen: int, wanted: str) -> None:
+    """Reads a terminal until it shows something; fails if it does not, or shows a lot else before."""
+    seen = ""
+    while wanted not in seen:
+        ready, _, _ = select.select([screen], [], [], READ_LIMIT_S)
+        assert ready, f"no {wanted!r} after {seen!r}"
+        seen += os.read(screen, 65536).decode("utf-8", "replace")
+        assert len(seen) < SCREENFULS, f"no {wanted!r} in {seen[:500]!r}"

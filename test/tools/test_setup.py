@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from setup import python
-from setup.__main__ import LEVELS, levels_up_to
+from setup import __main__ as setup_main
+from setup import command, python
+from setup.__main__ import LEVELS, NEXT, levels_up_to
 from setup.command import ROOT, SetupError, Stamp, digest, run
 
 APT = ROOT / "tools" / "setup" / "apt.sh"
@@ -185,3 +186,99 @@ def test_every_level_has_its_extra_and_its_target() -> None:
     assert set(python.EXTRAS) == set(LEVELS)
     for level in LEVELS:
         assert f"setup-{level}" in makefile
+
+
+@pytest.fixture
+def pip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+    """The calls of pip in an environment of the test's own; nothing is installed."""
+    calls: list[list[str]] = []
+    monkeypatch.setattr(python, "VENV", tmp_path)
+    monkeypatch.setattr(
+        python, "run", lambda command, _failure: calls.append([str(word) for word in command])
+    )
+    monkeypatch.setattr(python, "installed_version", python.pinned_version)
+    return calls
+
+
+def install(*levels: str) -> None:
+    python._install_levels(levels, tomllib.loads(python.PYPROJECT.read_text(encoding="utf-8")))
+
+
+def test_what_the_levels_lack_is_installed_by_one_call_and_its_size_is_told(
+    pip: list[list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    install("demo", "train", "test")
+    [call] = pip
+    assert {"cffi>=1.16", "torch>=2.4", "pytest>=8", "--constraint"} <= set(call)
+    size = sum(python.SIZE_MB[level] for level in ("demo", "train", "test"))
+    [told] = capsys.readouterr().err.splitlines()
+    assert told.startswith(f"setup: installing Python packages, {size} MB on the disk: platformio, ")
+    install("demo", "train", "test")
+    assert len(pip) == 1, "all was there"
+    (tmp_path / ".tilenca-test").unlink()
+    install("demo", "train", "test")
+    assert "pytest>=8" in pip[1]
+    assert "torch>=2.4" not in pip[1]
+
+
+def test_an_installation_that_failed_is_done_again(
+    pip: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise SetupError("no network")
+
+    install("demo")
+    (tmp_path / ".tilenca-demo").write_text("of other requirements")
+    with monkeypatch.context() as patch:
+        patch.setattr(python, "run", fail)
+        with pytest.raises(SetupError):
+            install("demo")
+    install("demo")
+    assert len(pip) == 2
+
+
+def test_another_platformio_than_the_pinned_one_is_replaced(
+    pip: list[list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install("demo", "train")
+    monkeypatch.setattr(python, "installed_version", lambda _: "0.0")
+    install("demo", "train")
+    assert "torch>=2.4" not in pip[1]
+    assert any(word.startswith("platformio") for word in pip[1])
+
+
+def test_every_level_says_how_large_it_is_and_what_to_do_next() -> None:
+    assert set(python.SIZE_MB) == set(NEXT) == set(LEVELS)
+
+
+@pytest.mark.parametrize(
+    ("options", "last"), [(["--next"], "ready. Next: make test"), ([], "ready after 0 s")]
+)
+def test_the_last_line_says_that_it_is_ready(
+    options: list[str], last: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(setup_main, "bring_up_to", lambda levels: command.say(f"doing {levels[-1]}"))
+    monkeypatch.setattr(command, "_programs", command._Programs())
+    monkeypatch.setattr(sys, "argv", ["setup", "test", *options])
+    assert setup_main.main() == 0
+    assert capsys.readouterr().err.splitlines() == ["setup: doing test", f"setup: {last}"]
+
+
+def test_where_all_was_ready_a_target_that_only_needs_it_says_nothing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(setup_main, "bring_up_to", lambda _: None)
+    monkeypatch.setattr(command, "_programs", command._Programs())
+    monkeypatch.setattr(sys, "argv", ["setup", "test"])
+    assert setup_main.main() == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_apt_asks_its_mirrors_once_and_not_again_at_once(tmp_path: Path) -> None:
+    programs = {
+        "id": "echo 0",
+        "apt_get": 'for word; do echo "$word"; done | grep -E "^(update|install)$" >>calls',
+    }
+    for _ in range(2):
+        assert run_apt(tmp_path, "no-such-package", **programs).returncode == 0
+    assert (tmp_path / "calls").read_text(encoding="utf-8").split() == ["update", "install", "install"]

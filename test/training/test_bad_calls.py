@@ -5,21 +5,18 @@ from typing import Any
 
 import pytest
 
+from support.c_structures import Structures
 from tilenca.base import native_library
-from tilenca.base.native_library import Library
 
 INT_MAX = 2**31 - 1
 CELLS, CHANNELS, HIDDEN, ROW = 2, 2, 3, 16
 
 
-class Given:
+class Given(Structures):
     """Two cells that update in one tick of two; single fields can be given another value."""
 
     def __init__(self) -> None:
-        self.library: Library = native_library.load("rollout")
-        self.ffi, self.lib = self.library.ffi, self.library.lib
-        self.null = self.ffi.NULL
-        self.alive: list[Any] = []  # memory that structures point to
+        super().__init__("rollout")
         sizes = {"w1": HIDDEN * 5 * CHANNELS, "w2": HIDDEN * HIDDEN, "w3": CHANNELS * HIDDEN}
         sizes |= {"b1": HIDDEN, "b2": HIDDEN, "b3": CHANNELS}
         self.network_fields: dict[str, Any] = {"channels": CHANNELS, "hidden1": HIDDEN, "hidden2": HIDDEN}
@@ -35,25 +32,17 @@ class Given:
         }
         self.state = self.array("float", [1.0] * CELLS * CHANNELS)
 
-    def array(self, kind: str, values: list[Any]) -> Any:
-        self.alive.append(self.ffi.new(f"{kind}[]", values))
-        return self.alive[-1]
-
-    def made(self, kind: str, fields: dict[str, Any], other: dict[str, Any]) -> Any:
-        self.alive.append(self.ffi.new(f"tilenca_rollout_{kind}*", fields | other))
-        return self.alive[-1]
-
     def network(self, **other: Any) -> Any:
-        return self.made("network", self.network_fields, other)
+        return self.made("tilenca_rollout_network", self.network_fields, other)
 
     def schedule(self, **other: Any) -> Any:
-        return self.made("schedule", self.schedule_fields, other)
+        return self.made("tilenca_rollout_schedule", self.schedule_fields, other)
 
     def tape(self, **other: Any) -> Any:
         rows = {
             name: self.array("float", [0.0] * 2 * ROW) for name in ("inputs", "hidden1", "hidden2", "after")
         }
-        return self.made("tape", rows, other)
+        return self.made("tilenca_rollout_tape", rows, other)
 
 
 @pytest.fixture
@@ -91,8 +80,7 @@ BAD_NETWORKS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("other", BAD_NETWORKS, ids=str)
 def test_a_network_that_cannot_be(given: Given, other: dict[str, Any]) -> None:
-    network = given.network(**{name: given.null if value is None else value for name, value in other.items()})
-    both_fail(given, network, given.schedule(), given.state, given.tape())
+    both_fail(given, given.network(**other), given.schedule(), given.state, given.tape())
 
 
 BAD_SCHEDULES: list[dict[str, Any]] = [
@@ -104,20 +92,11 @@ BAD_SCHEDULES: list[dict[str, Any]] = [
     *({"perceived": [0] * 9 + [row]} for row in (-1, 5, INT_MAX, -INT_MAX - 1)),
     *({name: None} for name in ("updating", "perceived", "delivered")),
 ]
-KINDS = {"counts": "int64_t", "updating": "int32_t", "perceived": "int32_t"}
 
 
 @pytest.mark.parametrize("other", BAD_SCHEDULES, ids=str)
 def test_a_schedule_that_cannot_be(given: Given, other: dict[str, Any]) -> None:
-    fields = {
-        name: given.null
-        if value is None
-        else given.array(KINDS[name], value)
-        if isinstance(value, list)
-        else value
-        for name, value in other.items()
-    }
-    both_fail(given, given.network(), given.schedule(**fields), given.state, given.tape())
+    both_fail(given, given.network(), given.schedule(**other), given.state, given.tape())
 
 
 def test_arrays_and_structures_that_are_missing(given: Given) -> None:

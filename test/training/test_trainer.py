@@ -54,7 +54,7 @@ def test_two_drawings_are_told_apart_after_a_short_training(two_shapes: Path) ->
         SMOKE, iterations=200, ticks=(8, 12), learning_rate=5e-3, perturbed_pool=0, undisturbed_pool=0
     )
     recipe = replace(recipe, undisturbed_batch=0, refresh_every=0, clocks=0.0)
-    recipe = replace(recipe, lossy=0.0, damaged=0.0, unknown=0.0)
+    recipe = replace(recipe, lossy=0.0, damaged=0.0, unknown=0.0, varied=0.0, unlabelled=0.0)
     learner = make_trainer(job_of([two_shapes], paths.BUILD, 1, 16, recipe))
     agreements = [learner.step().agreement for _ in range(200)]
     assert np.mean(agreements[:20]) < 0.6

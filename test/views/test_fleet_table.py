@@ -1,7 +1,10 @@
 """The fleet as a table, and events as lines of a log."""
 
+from rich.console import Console
+
+from support.heard_fleet import HeardFleet
 from support.tile_port import STATE
-from tilenca.fleet.state import PortNews, TileView
+from tilenca.fleet.state import Fleet, PortNews, TileView
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
     AckSentence,
@@ -14,7 +17,7 @@ from tilenca.protocol.sentences import (
     TileSentence,
     TimeSentence,
 )
-from tilenca.views.fleet_table import cells, log_line
+from tilenca.views.fleet_table import HEADER, cells, live_table, log_line, summary
 
 
 def test_a_log_line_names_time_port_and_tile() -> None:
@@ -64,3 +67,77 @@ def test_a_tile_of_another_protocol_version_is_marked() -> None:
     view.take(Heard(2.0, "p", b"", HelloSentence(3, 7, 0, 21, 10, 100, 0, 0, 0, 255)))
     view.take(Heard(3.0, "p", b"", ErrorSentence(7, 0, "STACK", "")))
     assert cells(view, 3.0)[-1] == "STACK"
+
+
+def rendered(fleet: Fleet, now_s: float, width: int) -> list[str]:
+    """The lines of the live table on a terminal of that width."""
+    console = Console(width=width, height=50)
+    with console.capture() as captured:
+        console.print(live_table(fleet, now_s, width))
+    return captured.get().splitlines()
+
+
+def twenty_tiles() -> Fleet:
+    lab = HeardFleet()
+    for number in range(20, 0, -1):
+        port = f"/dev/ttyACM{number + 80}"
+        lab.open(port)
+        label, margin = ("", None) if number == 3 else ("4", 100 + number)
+        state = TileSentence(number, 1_234_000, 99_990 + number, label, 4, margin, "N-SW", STATE)
+        lab.say(port, state, LinkSentence(number, 0, "W", 1, 49_999, 3, 120, 0, 9, 0, None, None))
+    return lab.fleet
+
+
+def test_on_eighty_columns_every_row_is_whole_and_the_last_columns_are_those_that_matter() -> None:
+    head, *rows = rendered(twenty_tiles(), 1.5, 80)
+    assert head.split() == [
+        "PORT",
+        "TILE",
+        "SHOWS",
+        "MARGIN",
+        "UPDATE",
+        "LINKS",
+        "CORRUPT",
+        "LOST",
+        "HEARD",
+        "NOTE",
+    ]
+    assert rows[0].split() == ["ttyACM81", "1", "4", "101", "99991", "N-SW", "3", "120", "0.5", "s", "ago"]
+    assert rows[2].split()[:4] == ["ttyACM83", "3", "nothing", "-"]
+    assert len(rows) == 20
+    assert not any("…" in line for line in (head, *rows))
+
+
+def test_a_wide_terminal_shows_all_columns_and_where_the_ports_are() -> None:
+    head, first, *_ = rendered(twenty_tiles(), 1.5, 140)
+    assert head.split() == " ".join(HEADER).split()
+    assert first.startswith("/dev/ttyACM81 ")
+
+
+def test_a_long_note_takes_the_room_that_is_left_and_costs_no_column() -> None:
+    fleet = twenty_tiles()
+    reason = "it was unplugged, or another program took it"
+    fleet.take(PortNews(2.0, "/dev/ttyACM85", is_open=False, reason=reason))
+    head, *rows = rendered(fleet, 2.0, 80)
+    assert "MARGIN" in head
+    [told] = [row for row in rows if row.startswith("ttyACM85 ")]
+    assert len(told) == 80
+    assert "  it was unpl" in told
+
+
+def test_ports_of_one_name_in_two_folders_keep_their_folders() -> None:
+    lab = HeardFleet()
+    lab.open("/some/lab/tile-01", "/another/lab/tile-01", "/another/lab/tile-02")
+    _, *rows = rendered(lab.fleet, 1.0, 80)
+    assert [row.split()[0] for row in rows] == ["/another/lab/tile-01", "tile-02", "/some/lab/tile-01"]
+
+
+def test_tables_are_in_the_order_of_the_tiles_whatever_is_heard_first() -> None:
+    lab = HeardFleet()
+    lab.open("p10", "p9", "c", "b", "a")
+    lab.say("a", TileSentence(10, 100, 7, "4", 4, 30, "----", STATE))
+    lab.say("b", TileSentence(9, 100, 7, "4", 4, 30, "----", STATE))
+    lab.say("c", TileSentence(0, 100, 7, "4", 4, 30, "----", STATE))  # has no id yet
+    expected = ["b", "a", "c", "p9", "p10"]
+    assert [row.split()[0] for row in rendered(lab.fleet, 1.0, 80)[1:]] == expected
+    assert [row.split()[0] for row in summary(lab.fleet.tiles.values()).splitlines()[1:]] == expected

@@ -39,8 +39,8 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
     last = {line.split()[1]: line for line in lines}
     assert last.keys() == {"5", "6"}
     assert "200/400" in last["5"]
-    assert "loss 0.1250  agree 0.750  50/s" in last["5"]
-    assert "targets 3/8, short by 0.062" in last["5"]
+    assert "loss 0.1250  all right 75.0%  50/s" in last["5"]
+    assert "  3 of 8 targets met, 0.062 short" in last["5"]
     assert "0/400" in last["6"]
     assert "loss" not in last["6"], "it has not begun"
     assert not any("seed 5:" in line for line in lines), "a plain line among the bars"
@@ -69,5 +69,5 @@ def test_without_a_terminal_each_seed_tells_at_most_ten_lines(capsys: pytest.Cap
         *(["5:", f"{1000 * part // LINES}/1000"] for part in range(1, LINES + 1)),
         ["6:", "1000/1000"],
     ]
-    assert "targets 8/8, short by 0.000" in lines[-1]
+    assert lines[-1].endswith("  8 of 8 targets met")
     assert "targets" not in lines[0]

@@ -22,6 +22,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
+    "sphinx_copybutton",
     "docs.docstrings",
     "docs.command_pages",
     "docs.module_pages",
@@ -47,6 +48,9 @@ html_title = f"tilenca {version}"
 html_extra_path = ["root"]  # index.html, which leads to the root document
 html_copy_source = False
 html_show_copyright = False
+
+# A button on code that a reader types or keeps, not on what a program prints.
+copybutton_selector = ":is(.highlight-sh, .highlight-python, .highlight-toml) pre"
 
 highlight_language = "text"  # of a block that names no language
 

@@ -1,13 +1,16 @@
 """Builds the source archive and, from it, the wheel: python -m release.wheel, with tools on the path.
 
-The wheel is built from the unpacked archive, which proves that the archive is whole. If the archive is the
-same as last time, nothing is built; if it is not, only what changed is compiled.
+The wheel is built from the unpacked archive, which proves that the archive has all that the wheel carries.
+Only the libraries are those of `make setup`, built with the same flags, so that nothing is compiled twice.
+All that the compiler has read for them must be in the archive. If the archive is the same as last time,
+nothing is built.
 """
 
 import argparse
 import fcntl
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -15,8 +18,11 @@ import tarfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from setup import native
+
 ROOT = Path(__file__).resolve().parents[2]
 DIST = ROOT / "dist"
+EXPORTS = "tools/c_api/exports.map"  # of all libraries, for the linker
 # Between the runs: the unpacked archive, and what CMake built of it.
 WORK = ROOT / "build" / "wheel"
 
@@ -78,14 +84,53 @@ def unpack(archive: Path, folder: Path) -> None:
         path.unlink()
 
 
+def read_by_compiler(build: Path = native.BUILD) -> set[str]:
+    """The files of the tree that the libraries of a build are made of: sources, headers, a list of exports.
+
+    Args:
+        build: the folder of the build, which is up to date.
+
+    Returns:
+        Paths as seen from the root of the tree.
+
+    Raises:
+        WheelError: the build does not tell.
+    """
+    if (build / "build.ninja").exists():
+        command = ["ninja", "-C", str(build), "-t", "deps"]
+        told = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    else:  # the depfiles of a Makefile
+        told = "".join(path.read_text(encoding="utf-8") for path in build.rglob("*.o.d")).replace("\\ ", " ")
+    read = {Path(word) for word in re.findall(rf"{re.escape(str(ROOT))}/(\S+)", told)}
+    # What was read for a source that is gone by now is told as well.
+    read = {path for path in read if path.parts[0] != "build" and (ROOT / path).exists()}
+    if not any(path.suffix == ".cpp" for path in read):
+        raise WheelError(f"{build}: does not tell what it was compiled from; remove it and run `make setup`")
+    return {str(path) for path in read} | {EXPORTS}
+
+
+def check_whole(archive: Path) -> None:
+    """Checks that the libraries can be built from the source archive.
+
+    Raises:
+        WheelError: it lacks a file that they are made of.
+    """
+    with tarfile.open(archive) as tar:
+        names = {name.partition("/")[2] for name in tar.getnames()}
+    if missing := read_by_compiler() - names:
+        raise WheelError(
+            f"{archive.name}: lacks {', '.join(sorted(missing))}; see sdist.exclude in pyproject.toml"
+        )
+
+
 def repair(wheel: Path, out: Path) -> Path:
-    """Checks that the wheel runs on any Linux of its age and names it accordingly.
+    """Checks that the wheel runs on any Linux of its age, names it accordingly, and strips its libraries.
 
     Raises:
         WheelError: it needs what is not part of every such Linux.
     """
     shutil.rmtree(out, ignore_errors=True)
-    run("auditwheel", "repair", "--wheel-dir", out, wheel)
+    run("auditwheel", "repair", "--strip", "--wheel-dir", out, wheel)
     [product] = out.iterdir()
     if "-manylinux_" not in product.name:
         raise WheelError(f"{product.name}: not a manylinux wheel; `auditwheel show {wheel}` says why")
@@ -107,6 +152,8 @@ def make(out: Path = DIST) -> list[Path]:
 def _make(out: Path) -> list[Path]:
     run("tilenca.cli", "export", "--check")  # the image is to be that of the shipped digits
     archive = build("sdist", ROOT, WORK / "sdist")
+    native.build_libraries(["demo", "train"])
+    check_whole(archive)
     key = hashlib.sha256(archive.read_bytes()).hexdigest()
     stamp = WORK / "made"
     wheels = sorted(out.glob("tilenca-*.whl"))
@@ -114,7 +161,9 @@ def _make(out: Path) -> list[Path]:
         return [out / archive.name, *wheels]
     stamp.unlink(missing_ok=True)
     unpack(archive, WORK / "source")
-    wheel = build("wheel", WORK / "source", WORK / "wheel", f"--config-setting=build-dir={WORK / 'cmake'}")
+    options = {"build-dir": WORK / "cmake", "cmake.define.TILENCA_BUILT": native.BUILD}
+    settings = [f"--config-setting={name}={value}" for name, value in options.items()]
+    wheel = build("wheel", WORK / "source", WORK / "wheel", *settings)
     products = [archive, repair(wheel, WORK / "repaired")]
     out.mkdir(parents=True, exist_ok=True)
     for old in out.glob("tilenca-*"):

@@ -1,14 +1,18 @@
-"""The set-up after the system's own part (setup.sh): Python packages, C++ libraries, PlatformIO.
+"""The set-up after the system's own part (setup.sh): system and Python packages, C++ libraries, PlatformIO.
 
-Run by `make setup`; each step looks first whether it is already done.
+Run by `make setup`. Each step looks first whether it is already done, and steps that do not need each other
+run side by side.
 """
 
 import argparse
 import sys
+import time
+from collections.abc import Sequence
 
 from offline.seed import DEBIAN_PACKAGES
-from setup import native, pio, python
-from setup.command import SetupError
+from setup import command, native, pio, python
+from setup.command import SetupError, say
+from setup.side_by_side import Awaited, side_by_side
 
 LEVELS = {
     "demo": "build the firmware and run it on emulated tiles",
@@ -19,14 +23,60 @@ LEVELS = {
 }
 # The levels that each one includes.
 INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["train"], "check": ["test", "docs"]}
-# Debian packages beyond those of setup.sh. The tests seed PlatformIO for real, needed here or not.
-SYSTEM_PACKAGES = {"test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"]}
+# Debian packages by level. The tests seed PlatformIO for real, needed here or not.
+SYSTEM_PACKAGES = {
+    "demo": ["g++", "make", "cmake", "ninja-build", "avrdude"],
+    "test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"],
+}
+NEXT = {
+    "demo": "make demo",
+    "train": ". .venv/bin/activate && tilenca train --recipe quick --out models/mine",
+    "test": "make test",
+    "docs": "make docs",
+    "check": "make check",
+}
 
 
 def levels_up_to(level: str) -> list[str]:
     """The level and all that it includes, the smallest first."""
     below = [lower for included in INCLUDED.get(level, []) for lower in levels_up_to(included)]
     return list(dict.fromkeys([*below, level]))
+
+
+def bring_up_to(levels: Sequence[str]) -> None:
+    """Does the steps of the levels, three at a time.
+
+    Raises:
+        SetupError: a step failed.
+        SystemExit: system packages are missing and cannot be installed; apt.sh has told the user.
+    """
+    compiler, system = Awaited(), Awaited()
+
+    def packages(of: Sequence[str]) -> None:
+        native.install_system_packages([name for level in of for name in SYSTEM_PACKAGES.get(level, [])])
+
+    def install_system() -> None:
+        with system:
+            with compiler:
+                packages(levels[:1])  # the demo's, among them the compiler
+            packages(levels[1:])
+
+    def compile_libraries() -> None:
+        compiler.wait()
+        native.build_libraries(levels)
+
+    def install_python() -> None:
+        python.make_environment(levels)
+        system.wait()
+        pio.make_ready()
+
+    side_by_side(
+        {
+            "system packages": install_system,
+            "the C++ libraries": compile_libraries,
+            "Python packages and PlatformIO": install_python,
+        }
+    )
 
 
 def main() -> int:
@@ -37,18 +87,21 @@ def main() -> int:
         epilog="Levels: " + "; ".join(f"{name}: {purpose}" for name, purpose in LEVELS.items()) + ".",
     )
     parser.add_argument("level", nargs="?", choices=list(LEVELS), default="demo")
-    reached = levels_up_to(parser.parse_args().level)
+    parser.add_argument("--next", action="store_true", help="say at the end which command is next")
+    args = parser.parse_args()
+    started = time.monotonic()
     try:
-        native.install_system_packages([name for step in reached for name in SYSTEM_PACKAGES.get(step, [])])
-        python.make_environment(reached)
-        native.build_libraries(reached)
-        pio.make_ready()
+        bring_up_to(levels_up_to(args.level))
     except SetupError as error:
         print(f"setup: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("setup: interrupted; run it again to go on", file=sys.stderr)
         return 130
+    if args.next:
+        say(f"ready. Next: {NEXT[args.level]}")
+    elif command.has_said_something():
+        say(f"ready after {time.monotonic() - started:.0f} s")
     return 0
 
 

@@ -37,7 +37,9 @@ apt_get() {
 echo "setup: installing system packages:$missing" >&2
 mkdir -p build/setup
 # One source of many may be down without harm: whether the packages are to be had is for the install to say.
-apt_get update >"$log" 2>&1 || true
+if [ -z "$(find build/setup/apt-updated -mmin -10 2>/dev/null)" ]; then
+    apt_get update >"$log" 2>&1 && touch build/setup/apt-updated || true
+fi
 # shellcheck disable=SC2086  # a list of words
 if ! apt_get install --no-install-recommends $missing >>"$log" 2>&1; then
     tail -n 15 "$log" >&2

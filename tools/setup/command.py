@@ -1,8 +1,14 @@
-"""Runs other programs so that none can wait for an answer, and remembers which steps are done."""
+"""Runs other programs so that none can wait for an answer, and remembers which steps are done.
+
+Steps may run side by side: what a program prints is shown in one piece, and only where it fails.
+"""
 
 import hashlib
+import os
+import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -13,40 +19,81 @@ class SetupError(Exception):
     """The set-up cannot go on; the message names the remedy. The caller prints it and exits."""
 
 
+class StoppedError(SetupError):
+    """A step did not end, or did not start, because another one failed."""
+
+
+class _Programs:
+    """The programs that run now, and whether more may start."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.running: set[subprocess.Popen[bytes]] = set()
+        self.stopped = False
+        self.lines_said = 0
+
+
+_programs = _Programs()
+
+
 def say(message: str) -> None:
-    """Tells the user the current step, on standard error."""
-    print(f"setup: {message}", file=sys.stderr, flush=True)
+    """Tells the user the current step, on standard error, as one line."""
+    _programs.lines_said += 1
+    sys.stderr.write(f"setup: {message}\n")
+    sys.stderr.flush()
 
 
-def run(
-    command: Sequence[str | Path], failure: str, env: Mapping[str, str] | None = None, quiet: bool = False
-) -> None:
-    """Runs a command in the project's root, with nothing to read from.
+def has_said_something() -> bool:
+    """Whether there was anything to do."""
+    return _programs.lines_said > 0
+
+
+def stop() -> None:
+    """Ends the programs that run now, with all that they have started; none starts any more."""
+    with _programs.lock:
+        _programs.stopped = True
+        for program in _programs.running:
+            os.killpg(program.pid, signal.SIGTERM)
+
+
+def run(command: Sequence[str | Path], failure: str, env: Mapping[str, str] | None = None) -> None:
+    """Runs a command in the project's root, with nothing to read from; shows its output only where it fails.
 
     Args:
         command: the program and its arguments.
         failure: the message to the user if it fails, with the remedy.
         env: the whole environment, if not the present one.
-        quiet: whether its output is shown only where it fails.
 
     Raises:
         SetupError: it could not be started or did not end with 0.
+        StoppedError: `stop` was called.
     """
+    with _programs.lock:
+        if _programs.stopped:
+            raise StoppedError("another step failed")
+        try:
+            program = subprocess.Popen(
+                [str(word) for word in command],
+                cwd=ROOT,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                env=env,
+                process_group=0,  # with which `stop` ends its children, too
+            )
+        except OSError as error:
+            raise SetupError(f"{failure} ({error})") from error
+        _programs.running.add(program)
     try:
-        done = subprocess.run(
-            [str(word) for word in command],
-            cwd=ROOT,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE if quiet else None,
-            stderr=subprocess.STDOUT if quiet else None,
-            env=env,
-            check=False,
-        )
-    except OSError as error:
-        raise SetupError(f"{failure} ({error})") from error
-    if done.returncode:
-        sys.stderr.write((done.stdout or b"").decode(errors="replace"))
-        raise SetupError(f"{failure} (exit status {done.returncode})")
+        output, _ = program.communicate()
+    finally:
+        with _programs.lock:
+            _programs.running.discard(program)
+    if program.returncode and _programs.stopped:
+        raise StoppedError("another step failed")
+    if program.returncode:
+        sys.stderr.write(output.decode(errors="replace"))
+        raise SetupError(f"{failure} (exit status {program.returncode})")
 
 
 def digest(parts: Iterable[str | bytes]) -> str:

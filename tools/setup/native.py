@@ -53,13 +53,12 @@ def build_libraries(levels: Sequence[str]) -> None:
             ["cmake", "--preset", PRESET, *generator],
             f"CMake cannot prepare the libraries, {REMEDY}",
             env,
-            True,
         )
         cache.touch()  # CMake leaves it alone where nothing in it changes
     wanted = [target for level in levels for target in LIBRARIES.get(level, [])]
     jobs = ["--parallel", str(os.cpu_count() or 1)]
     build = ["cmake", "--build", "--preset", PRESET, *jobs, "--target", *wanted]
-    run(build, f"the C++ libraries do not compile, {REMEDY}", env, True)
+    run(build, f"the C++ libraries do not compile, {REMEDY}", env)
 
 
 def configured_for(build: Path) -> Path | None:

@@ -68,7 +68,7 @@ def _seed_if_changed(version: str) -> None:
     started = time.monotonic()
     stamp.clear()
     tools = {**os.environ, "PYTHONPATH": str(ROOT / "tools")}
-    run([PYTHON, "-m", "offline.seed", CORE_DIR], "the stand-ins for PlatformIO cannot be made", env=tools)
+    run([PYTHON, "-m", "offline.seed", CORE_DIR], "the stand-ins for PlatformIO cannot be made", tools)
     try:
         seed.write_local_ini(LOCAL_INI)
     except FileExistsError as error:

@@ -23,6 +23,8 @@ EXTRAS = {
     "check": ["check"],
     "docs": ["docs"],
 }
+# What they take on the disk, roughly: it says how long the download may be.
+SIZE_MB = {"demo": 110, "train": 970, "test": 15, "check": 100, "docs": 80}
 # The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 
@@ -55,9 +57,7 @@ def make_environment(levels: Sequence[str]) -> None:
         SetupError: an installation failed.
     """
     _make_venv()
-    project = tomllib.loads(PYPROJECT.read_text(encoding="utf-8"))
-    for level in levels:
-        _install_level(level, project)
+    _install_levels(levels, tomllib.loads(PYPROJECT.read_text(encoding="utf-8")))
     _install_project()
 
 
@@ -109,17 +109,31 @@ def requirements(level: str, project: dict[str, Any]) -> list[str]:
     return wanted
 
 
-def _install_level(level: str, project: dict[str, Any]) -> None:
-    wanted = requirements(level, project)
-    stamp = Stamp(VENV / f".tilenca-{level}", digest([*wanted, CONSTRAINTS.read_bytes()]))
-    pin_holds = level != "demo" or installed_version("platformio") == pinned_version("platformio")
-    if stamp.is_current() and pin_holds:
+def _install_levels(levels: Sequence[str], project: dict[str, Any]) -> None:
+    """Installs what the levels lack, all at once: pip resolves their common dependencies once."""
+    wanted = {level: requirements(level, project) for level in levels}
+    stamps = {level: _stamp(level, wanted[level]) for level in levels}
+    lacking = [level for level in levels if not stamps[level].is_current()]
+    if "demo" not in lacking and installed_version("platformio") != pinned_version("platformio"):
+        lacking.insert(0, "demo")
+    if not lacking:
         return
-    names = ", ".join(re.split(r"[<>=\[]", requirement)[0] for requirement in wanted)
-    say(f"installing Python packages: {names}")
-    stamp.clear()
-    _pip("install", "--constraint", CONSTRAINTS, *wanted)
-    stamp.set()
+    packages = [requirement for level in lacking for requirement in wanted[level]]
+    size = sum(SIZE_MB[level] for level in lacking)
+    say(f"installing Python packages, {size} MB on the disk: {', '.join(map(_name, packages))}")
+    for level in lacking:
+        stamps[level].clear()
+    _pip("install", "--constraint", CONSTRAINTS, *packages)
+    for level in lacking:
+        stamps[level].set()
+
+
+def _stamp(level: str, wanted: Sequence[str]) -> Stamp:
+    return Stamp(VENV / f".tilenca-{level}", digest([*wanted, CONSTRAINTS.read_bytes()]))
+
+
+def _name(requirement: str) -> str:
+    return re.split(r"[<>=\[]", requirement)[0]
 
 
 def _install_project() -> None:

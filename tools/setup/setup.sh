@@ -1,7 +1,7 @@
 #!/bin/sh
-# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|docs|check]
+# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|docs|check] [--next]
 #
-# This part finds or installs what must be there before Python is; tools/setup/__main__.py does the rest.
+# This part finds or installs Python; tools/setup/__main__.py does the rest.
 set -eu
 cd "$(dirname "$0")/../.."
 
@@ -13,8 +13,6 @@ find_python() {
         fi
     done
 }
-
-sh tools/setup/apt.sh g++ make cmake ninja-build avrdude
 
 python=.venv/bin/python
 if ! "$python" -c '' 2>/dev/null; then

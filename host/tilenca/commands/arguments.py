@@ -3,16 +3,17 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn, get_args
+from typing import Any, NoReturn
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.shipped import model_folder, model_names, shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
 from tilenca.shapes.sizes import Size, parse_size
-from tilenca.simulator.conditions import ScheduleKind
 
 MAX_COUNT = 1_000_000
+SCHEDULES = ("clock", "random", "listing")  # simulator/conditions.py has them, with numpy
 
 
 class Parser(argparse.ArgumentParser):
@@ -89,11 +90,23 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """The `--model` option of all commands that read a trained model."""
     parser.add_argument(
         "--model",
-        type=Path,
+        type=model_folder,
         default=paths.DEFAULT_MODEL,
         metavar="DIR",
-        help="the model's directory (models/digits)",
+        help=f"the model's directory, or one of: {' '.join(model_names())} (digits)",
     )
+
+
+def add_shapes_argument(add: Callable[..., Any], what: str, **more: Any) -> None:
+    """The `--shapes` option of all commands that read shape files.
+
+    Args:
+        add: `add_argument` of a parser or a group.
+        what: the rest of the help text, before the names of the files that come with tilenca.
+        more: further arguments of `add`.
+    """
+    names = " ".join(shapes_names())
+    add("--shapes", type=shapes_file, metavar="F", help=f"{what}, or one of: {names} (digits)", **more)
 
 
 def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
@@ -101,7 +114,7 @@ def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--schedule",
-        choices=get_args(ScheduleKind),
+        choices=SCHEDULES,
         default="clock",
         help="clock: the tiles' own clocks; listing: the paper's, one tile after another; random: two random "
         "halves a step (clock)",

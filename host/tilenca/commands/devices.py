@@ -84,6 +84,10 @@ def run(args: argparse.Namespace) -> int:
         print(table(HEADER, [_row(board, answers.get(board.port.name)) for board in present]))
     if not present:
         raise none_connected(found, args.tiles)
+    if not (args.json or args.ask or args.learn):
+        warn(
+            "next: tilenca devices --ask asks each tile for its id and firmware; opening a port may reset it"
+        )
     return 1 if left_out else 0
 
 

@@ -10,7 +10,7 @@ from tilenca.base import paths
 from tilenca.base.errors import UsageError, image_error
 from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
-from tilenca.commands.arguments import count, number, seed, size, whole
+from tilenca.commands.arguments import add_shapes_argument, count, number, seed, size, whole
 from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.faults import KINDS
@@ -43,13 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
     )
-    add(
-        "--shapes",
-        type=Path,
-        default=paths.DEFAULT_SHAPES,
-        metavar="F",
-        help="shape file (shapes/digits.toml)",
-    )
+    add_shapes_argument(add, "shape file", default=paths.DEFAULT_SHAPES)
     add("--size", type=size, metavar="RxC", help="stretch the shapes to so many rows and columns, like 9x7")
     add("--elf", type=Path, metavar="F", help="firmware image (the last build's, or the one of the package)")
     length = parser.add_mutually_exclusive_group()

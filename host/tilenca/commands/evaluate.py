@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.base.project import build_remedy, firmware_image, install_remedy
-from tilenca.commands.arguments import add_condition_arguments, add_model_argument, count, seed, size
+from tilenca.commands.arguments import (
+    add_condition_arguments,
+    add_model_argument,
+    add_shapes_argument,
+    count,
+    seed,
+    size,
+)
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY, validate
@@ -65,14 +72,7 @@ class RunResults:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
     add_model_argument(parser)
-    parser.add_argument(
-        "--shapes",
-        type=Path,
-        nargs="+",
-        default=[paths.DEFAULT_SHAPES],
-        metavar="F",
-        help="shape files (shapes/digits.toml)",
-    )
+    add_shapes_argument(parser.add_argument, "shape files", nargs="+", default=[paths.DEFAULT_SHAPES])
     parser.add_argument(
         "--engine",
         choices=tuple(RUNS),

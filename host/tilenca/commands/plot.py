@@ -8,7 +8,7 @@ from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import add_model_argument, seed, whole
+from tilenca.commands.arguments import add_model_argument, add_shapes_argument, seed, whole
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     film.add_argument(
         "--shape", metavar="NAME", help="the shape to film, such as 4, or 4@2 if the label has two drawings"
     )
-    film.add_argument("--shapes", type=Path, metavar="F", help="the file it is in (shapes/digits.toml)")
+    add_shapes_argument(film.add_argument, "the file it is in")
     film.add_argument(
         "--steps",
         type=whole(1, MAX_STEPS),

@@ -5,7 +5,6 @@ import json
 import re
 import time
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,14 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import add_condition_arguments, add_model_argument, count, seed, whole
+from tilenca.commands.arguments import (
+    add_condition_arguments,
+    add_model_argument,
+    add_shapes_argument,
+    count,
+    seed,
+    whole,
+)
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
@@ -42,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
     add_model_argument(parser)
-    add("--shapes", type=Path, nargs="+", metavar="F", help="shape files (shapes/digits.toml)")
+    add_shapes_argument(add, "shape files", nargs="+")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
         "--shape",

@@ -15,7 +15,7 @@ from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.stdio import warn
-from tilenca.commands.arguments import count, seed, whole
+from tilenca.commands.arguments import add_shapes_argument, count, seed, whole
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
@@ -36,14 +36,11 @@ SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
-    parser.add_argument(
-        "--shapes",
-        type=Path,
+    add_shapes_argument(
+        parser.add_argument,
+        "shape files, one task; the first may list other sizes at which its drawings keep their class",
         nargs="+",
         default=[paths.DEFAULT_SHAPES],
-        metavar="F",
-        help="shape files, one task; the first may list other sizes at which its drawings keep their class "
-        "(shapes/digits.toml)",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the model's folder")
     parser.add_argument(

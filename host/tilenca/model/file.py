@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base.errors import UsageError
-from tilenca.base.paths import DEFAULT_MODEL
+from tilenca.base.shipped import model_names
 from tilenca.model import format_1
 from tilenca.protocol.checksums import crc16
 from tilenca.protocol.constants import MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
@@ -131,7 +131,8 @@ def load_model(directory: Path) -> Model:
                 f"{directory}: holds an unfinished training run; finish it with `tilenca train ... --resume`"
             ) from error
         raise UsageError(
-            f"{about_path}: {error.strerror}; give what `tilenca train` wrote, like {DEFAULT_MODEL}"
+            f"{about_path}: {error.strerror}; give what `tilenca train` wrote, "
+            f"or one of: {' '.join(model_names())}"
         ) from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
-from tilenca.base.paths import DEFAULT_SHAPES
+from tilenca.base.shipped import shapes_names
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
@@ -118,7 +118,9 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}; give a shape file, such as {DEFAULT_SHAPES}") from error
+        raise UsageError(
+            f"{path}: {error.strerror}; give a shape file, or one of: {' '.join(shapes_names())}"
+        ) from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not UTF-8 text at byte {error.start}; save the file as UTF-8") from error
     try:

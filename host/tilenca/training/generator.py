@@ -35,7 +35,7 @@ MOST_EDITS = 3
 MOST_TILES = 255  # of a drawing, as many as tiles can have different ids
 INDEXED = 2000  # drawings of the files that drawings of no class are compared with
 FEW = 200  # drawings of a task that are compared with each other, tile by tile
-TRIES = 200
+TRIES = 50
 
 
 class Generator:

@@ -104,8 +104,8 @@ class Pools:
         """Replaces some of the drawings that no grid has by new ones."""
         renewable = np.flatnonzero(self.curriculum.renewable)
         idle = np.setdiff1d(renewable, np.concatenate((self.perturbed.drawing, self.undisturbed.drawing)))
-        count = min(len(idle), round(self.recipe.renewed * len(renewable)))
-        self.curriculum = self.curriculum.renewed(self.random.permutation(idle)[:count], self.random)
+        some = self.random.permutation(idle)[: round(self.recipe.renewed * len(renewable))]
+        self.curriculum = self.curriculum.renewed(some, self.random)
 
     def take(self, progress: float) -> Taken:
         """Draws a batch, and disturbs some of it.
@@ -143,7 +143,7 @@ class Pools:
             self._refill(self.perturbed)
             return np.arange(count), 0, 0
         taken = self.random.choice(recipe.perturbed_pool, count, replace=False)
-        # Grids that do not agree go on until they do, and others are disturbed instead.
+        # Grids that do not agree go on until they do; others are disturbed.
         stays = self.perturbed.wrong[taken] & (self.perturbed.age[taken] < PATIENCE)
         taken = np.concatenate((taken[~stays], taken[stays]))
         resets = round(recipe.reset * count)
@@ -212,11 +212,9 @@ class Pools:
         self.curriculum = self.curriculum.with_drawings(places, [Shape(*shape) for shape in state["renewed"]])
 
     def _empty(self, count: int) -> Pool:
-        shape = (count, self.curriculum.most_tiles, self.channels)
-        zeros = np.zeros(count, np.int64)
-        return Pool(
-            zeros.copy(), np.zeros(shape, np.float32), zeros.copy(), zeros.copy(), np.zeros(count, np.bool_)
-        )
+        states = np.zeros((count, self.curriculum.most_tiles, self.channels), np.float32)
+        drawing, age, lifetime = np.zeros((3, count), np.int64)
+        return Pool(drawing, states, age, lifetime, np.zeros(count, np.bool_))
 
     def _refill(self, pool: Pool) -> None:
         for number in range(len(pool.age)):
@@ -228,8 +226,8 @@ class Pools:
         grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
         weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)
         failing = weights * (self.failures[self.curriculum.failing] + 1e-3)
-        self._chances = (1 - self.recipe.failure_weighting) * weights / weights.sum()
-        self._chances += self.recipe.failure_weighting * failing / failing.sum()
+        share = self.recipe.failure_weighting
+        self._chances = (1 - share) * weights / weights.sum() + share * failing / failing.sum()
 
     def _pick(self, among: NDArray[np.int64]) -> int:
         upto = np.cumsum(self._chances[among])
@@ -243,9 +241,9 @@ class Pools:
     def pick_other(self, drawing: int) -> int:
         """Another drawing of about its size; the same where there is none."""
         extents = self.drawings.extents
-        others = np.flatnonzero((np.abs(extents - extents[drawing]) <= SAME_SCALE).all(axis=1))
-        others = others[others != drawing]
-        return self._pick(others) if len(others) else drawing
+        near = (np.abs(extents - extents[drawing]) <= SAME_SCALE).all(axis=1)
+        near[drawing] = False
+        return self._pick(np.flatnonzero(near)) if near.any() else drawing
 
     def any_states(self, count: int) -> States:
         """(count, C) states of any tiles of the perturbed pool, drawn independently of each other."""

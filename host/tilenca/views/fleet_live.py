@@ -77,7 +77,7 @@ class LiveView:
                 return picture
         options = self._console.options.update(width=width, height=None)
         rendered = self._console.render_lines(
-            live_table(self._fleet, self._now_s, self._overflow), options, pad=False
+            live_table(self._fleet, self._now_s, width, self._overflow), options, pad=False
         )
         return [Text.assemble(*((part.text, part.style or "") for part in line)) for line in rendered][
             :height

@@ -1,6 +1,7 @@
 """The monitor's text: events as log lines, the fleet as a table. Pure: events in, text out."""
 
 from collections.abc import Iterable
+from pathlib import PurePath
 
 from rich.console import OverflowMethod
 from rich.table import Table
@@ -8,6 +9,7 @@ from rich.text import Text
 
 from tilenca.fleet.events import clock_text, port_words
 from tilenca.fleet.grid import trouble
+from tilenca.fleet.ports import natural_key
 from tilenca.fleet.state import Event, Fleet, PortNews, TileView
 from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.describe import printable, said
@@ -28,6 +30,7 @@ HEADER = (
     "PORT",
     "TILE",
     "SHOWS",
+    "MARGIN",
     "UPDATE",
     "UP",
     "LINKS",
@@ -38,6 +41,10 @@ HEADER = (
     "BAD LINES",
     "NOTE",
 )
+# What a narrow terminal does without, the first of them first, until the others fit.
+SPARED = ("UP", "BAD LINES", "RECEIVED", "HEARD", "CORRUPT", "UPDATE", "LINKS", "LOST")
+NOTE_WIDTH = 12  # at most what a note asks for; a longer one takes the room that is left
+GAP = 2  # blanks between columns
 
 
 def cells(view: TileView, now_s: float) -> list[str]:
@@ -58,6 +65,7 @@ def cells(view: TileView, now_s: float) -> list[str]:
         view.port,
         _or_dash(view.tile_id),
         _or_dash(state and (state.label or "nothing")),
+        _or_dash(state and state.margin),
         _or_dash(state and state.updates),
         _or_dash(state and f"{state.uptime_ms / 1000:.0f} s"),
         _or_dash(state and state.links),
@@ -72,20 +80,51 @@ def _or_dash(value: object) -> str:
     return "-" if value is None else str(value)
 
 
-def live_table(fleet: Fleet, now_s: float, overflow: OverflowMethod = "ellipsis") -> Table:
-    """The fleet as it is now, for a terminal."""
-    picture = Table(box=None, pad_edge=False)
-    for name in HEADER:
+def live_table(fleet: Fleet, now_s: float, width: int, overflow: OverflowMethod = "ellipsis") -> Table:
+    """The fleet as it is now, by tiles, in the columns that fit on a terminal of that width."""
+    views = by_tile(fleet.tiles.values())
+    rows = [dict(zip(HEADER, cells(view, now_s), strict=True)) for view in views]
+    names = fitting(rows, width)
+    picture = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0))
+    others = [name for name in names if name != "NOTE"]
+    for name in others:
         picture.add_column(name, no_wrap=True, overflow=overflow)
-    for view in fleet.tiles.values():
-        row = cells(view, now_s)
-        healthy = view.is_open and not row[-1]
-        picture.add_row(*map(Text, row), style=None if healthy else "yellow")
+    room = max(width - _width(rows, others) - GAP, len("NOTE"))
+    picture.add_column("NOTE", no_wrap=True, overflow=overflow, max_width=room)
+    for view, row in zip(views, rows, strict=True):
+        healthy = view.is_open and not row["NOTE"]
+        picture.add_row(*(Text(row[name]) for name in names), style=None if healthy else "yellow")
     return picture
 
 
+def fitting(rows: list[dict[str, str]], width: int) -> list[str]:
+    """The names of the columns that fit; where not all do, the ports' folders go first, from the rows."""
+    names = list(HEADER)
+    if _width(rows, names) > width:
+        short = [PurePath(row["PORT"]).name for row in rows]
+        for row, name in zip(rows, short, strict=True):
+            row["PORT"] = name if short.count(name) == 1 else row["PORT"]
+    for spared in SPARED:
+        if _width(rows, names) <= width:
+            break
+        names.remove(spared)
+    return names
+
+
+def _width(rows: list[dict[str, str]], names: list[str]) -> int:
+    widest = {name: max(len(row[name]) for row in [{name: name}, *rows]) for name in names}
+    if "NOTE" in widest:
+        widest["NOTE"] = min(widest["NOTE"], NOTE_WIDTH)
+    return sum(widest.values()) + GAP * (len(names) - 1)
+
+
+def by_tile(views: Iterable[TileView]) -> list[TileView]:
+    """In the order of the tiles' ids, those without one last."""
+    return sorted(views, key=lambda view: (not view.tile_id, view.tile_id or 0, natural_key(view.port)))
+
+
 def summary(tiles: Iterable[TileView]) -> str:
-    """The sentences of each port, one row per port."""
+    """The sentences of each port, one row per port, in the order of the tiles."""
     rows = [
         [
             view.port,
@@ -95,6 +134,6 @@ def summary(tiles: Iterable[TileView]) -> str:
             str(view.outages),
             ("" if view.is_open else view.reason) or (BOARD_TEST if view.board_test else ""),
         ]
-        for view in tiles
+        for view in by_tile(tiles)
     ]
     return table(["PORT", "TILE", "SENTENCES", "BAD LINES", "OUTAGES", "NOTE"], rows)

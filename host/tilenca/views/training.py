@@ -44,8 +44,9 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
 
 
 def _note(news: Progress, rate: float) -> str:
-    note = f"loss {news.loss:.4f}  agree {news.agreement:.3f}  {rate:.0f}/s"
+    note = f"loss {news.loss:.4f}  all right {news.agreement:.1%}  {rate:.0f}/s"
     if news.check is not None:
         held, asked, shortfall = news.check
-        note += f"  targets {held}/{asked}, short by {shortfall:.3f}"
+        note += f"  {held} of {asked} targets met"
+        note += f", {shortfall:.3f} short" if shortfall else ""
     return note
