@@ -189,7 +189,9 @@ TILENCA_OP(in_status) {
     TILENCA_NEXT(1, 1);
 }
 TILENCA_OP(out_status) {
-    static_cast<void>(carry), static_cast<void>(zero), static_cast<void>(nvh); // all are in the new SREG
+    static_cast<void>(carry); // it and the other two are in the new SREG
+    static_cast<void>(zero);
+    static_cast<void>(nvh);
     write_status(cpu, cpu->data[at->d], cycle);
     return next(cpu, at + 1, cycle + 1, cpu->carry, cpu->zero, cpu->nvh);
 }

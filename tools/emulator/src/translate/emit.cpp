@@ -11,8 +11,8 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 1;   // one more with every change of what is emitted
-constexpr unsigned kStackPointer = 32; // among the registers
+constexpr unsigned kTextVersion = 1;                    // one more with every change of what is emitted
+constexpr unsigned kStackPointer = 32, kRegisters = 33; // the stack pointer is one more register
 
 // A block's function. Registers are variables: read when it is entered, written back wherever it is left.
 class Function {
@@ -55,7 +55,7 @@ class Function {
     }
 
   private:
-    using Registers = std::array<bool, kStackPointer + 1>;
+    using Registers = std::array<bool, kRegisters>;
 
     static std::string name(unsigned reg) { return reg == kStackPointer ? "sp" : "r" + std::to_string(reg); }
     static std::string stored(unsigned reg) {
