@@ -316,7 +316,7 @@ std::string run_ours(const Image& image, uint64_t cycles, std::vector<uint8_t>* 
     Tile tile(program, Fuses{}, Clock(), DataEnd{});
     std::string said;
     for (uint64_t end = 0; end <= cycles; end += 256) {
-        tile.run_until(static_cast<double>(end));
+        tile.run_until(static_cast<double>(end), static_cast<double>(end));
         for (auto& heard = tile.host().received(); !heard.empty(); heard.pop_front()) {
             said += static_cast<char>(heard.front().value);
         }

@@ -6,6 +6,8 @@ from support.avr import Compile
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, WEST
 from tilenca.emulator import Array, EmulatedTile
+from tilenca.emulator.array import CABLE_DELAY_S
+from tilenca.emulator.library import call
 
 # Passes on what comes from the west, plus one, to the east; the first tile of a row starts it.
 BUCKET_BRIGADE = """
@@ -27,10 +29,10 @@ int main(void) {
 """
 
 
-def build(elf: object) -> Array:
+def build(elf: object, cable_delay_s: float = CABLE_DELAY_S) -> Array:
     links = [(tile, EAST, tile + 1, WEST) for tile in range(4)]
     ppm, on = [2500.0, -1000.0, 0.0, 300.0, -2999.0], [0.0, 0.003, 0.001, 0.0005, 0.002]
-    array = Array(str(elf), 5, links, ppm, on)
+    array = Array(str(elf), 5, links, ppm, on, cable_delay_s=cable_delay_s)
     array[0].write_eeprom(0, b"\x01")
     return array
 
@@ -49,9 +51,30 @@ def test_bytes_pass_through_a_row_of_tiles(avr: Compile) -> None:
     )  # of 257, less what was sent before they were switched on
 
 
-def test_results_do_not_depend_on_how_time_is_sliced(avr: Compile) -> None:
+def test_bytes_are_the_same_whatever_a_cable_takes(avr: Compile) -> None:
+    two_hundred = BUCKET_BRIGADE.replace("UDR1 = n; }", "if (n < 200) UDR1 = n; }")
+    heard = []
+    for delay_s in (20e-6, 68e-6, 260e-6):
+        array = build(avr(two_hundred), delay_s)
+        array.run(0.19)
+        heard.append([tile.read_memory(0x1000, 2) for tile in array])
+    assert heard[0][4][0] in range(190, 201)
+    assert heard[1:] == heard[:1] * 2
+
+
+def test_a_cable_takes_what_it_took_when_the_array_began(avr: Compile) -> None:
+    array = build(avr(BUCKET_BRIGADE))
+    array.run(0.001)
+    with pytest.raises(UsageError, match="keep their delay once the array runs"):
+        call("array_set_cable_delay", array.handle, 20e-6)
+    with pytest.raises(UsageError, match="delay in ticks"):
+        build(avr(BUCKET_BRIGADE), 19e-6)
+
+
+@pytest.mark.parametrize("delay_s", [20e-6, 68e-6, 91e-6, 260e-6])
+def test_results_do_not_depend_on_how_time_is_sliced(avr: Compile, delay_s: float) -> None:
     elf = avr(BUCKET_BRIGADE)
-    whole, sliced = build(elf), build(elf)
+    whole, sliced = build(elf, delay_s), build(elf, delay_s)
     whole.run(0.1001)
     for _ in range(331):
         sliced.run(0.1001 / 331)

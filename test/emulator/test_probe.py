@@ -20,8 +20,9 @@ int main(void) {
 """
 
 
-def test_a_tap_reads_the_bytes_of_a_wire(avr: Compile) -> None:
-    array = Array(avr(TALKER), 2, [(0, EAST, 1, WEST)])
+@pytest.mark.parametrize("delay_us", [20, 68, 260])
+def test_a_tap_reads_the_bytes_of_a_wire_after_the_cables_delay(avr: Compile, delay_us: int) -> None:
+    array = Array(avr(TALKER), 2, [(0, EAST, 1, WEST)], cable_delay_s=delay_us / 1e6)
     sent, arrived = array[0].tap(EAST), array[1].tap(WEST, baud=38400, receiving=True)
     array.run(0.0115)
     bytes_sent, bytes_arrived = sent.read(), arrived.read()
@@ -29,7 +30,7 @@ def test_a_tap_reads_the_bytes_of_a_wire(avr: Compile) -> None:
     assert not any(byte.framing_error for byte in bytes_sent)
     assert [byte.value for byte in bytes_arrived] == [byte.value for byte in bytes_sent]
     late = {round((b.time_s - a.time_s) * 1e6) for a, b in zip(bytes_sent, bytes_arrived, strict=True)}
-    assert late == {20}
+    assert late == {delay_us}
     array.run(0.01)
     assert sent.read()[0].time_s > bytes_sent[-1].time_s
 

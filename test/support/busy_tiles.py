@@ -38,10 +38,10 @@ int main(void) {
 """
 
 
-def build(elf: object, threads: int = 1) -> Array:
+def build(elf: object, threads: int = 1, translated: bool = False) -> Array:
     array = Array(
         str(elf), 3, [(0, EAST, 1, WEST), (1, EAST, 2, WEST)], [400, -400, 0], [0, 0.001, 0.002],
-        threads=threads,
+        threads=threads, translated=translated,
     )  # fmt: skip
     array.set_fault(0, EAST, LinkFault(loss=0.1, flip=0.02), seed=9)
     array[1].set_adc_noise(2.0, seed=4)

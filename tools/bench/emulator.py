@@ -1,11 +1,12 @@
 """The emulator's speed, as ratios measured in one run: python -m bench.emulator [--write FILE].
 
+The real firmware comes first (`bench.emulator_firmware`), then programs that never sleep or always do.
+
 Wall times vary with the machine and its load; so each figure is the best of a few rounds, and the compared
 programs take turns.
 """
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
@@ -14,8 +15,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench import emulator_firmware
 from bench.publish import publish
-from tilenca.base.paths import ROOT
+from tilenca.base.paths import FIRMWARE_ELF, ROOT
 from tilenca.base.sides import EAST, WEST
 from tilenca.emulator import Array, Link
 
@@ -140,8 +142,10 @@ def main() -> int:
         print("bench: avr-gcc is not installed; the emulator is not measured", file=sys.stderr)
         return 0
     with tempfile.TemporaryDirectory() as directory:
-        section = table(measure(args.rounds, Path(directory)))
-    cores = len(os.sched_getaffinity(0))
+        place = Path(directory)
+        firmware = emulator_firmware.measure(args.rounds, FIRMWARE_ELF, simavr(place))
+        section = table([*firmware, *measure(args.rounds, place)])
+    cores = emulator_firmware.cores()
     section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; other programs may have run meanwhile."
     publish(section, args.write, BEGIN, END)
     return 0

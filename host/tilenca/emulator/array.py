@@ -11,8 +11,11 @@ from tilenca.base.errors import TilencaError, UsageError, image_error
 from tilenca.base.sides import SIDES
 from tilenca.emulator.library import call, library, new, text
 from tilenca.emulator.tile import DATA_SPACE, EmulatedTile
+from tilenca.emulator.translation import Translator
 
 MOST_DELAY_S = 1.0
+# What a cable takes. Tiles run in turns a little shorter than it; docs/EMULATOR.md says why nothing can tell.
+CABLE_DELAY_S = 260e-6
 
 # A link joins a side of one tile to a side of another: (tile, side, other tile, other side), tiles from 0.
 Link = tuple[int, int, int, int]
@@ -25,7 +28,7 @@ class LinkFault:
     Attributes:
         loss: share of the bytes that never arrive, 0..1.
         flip: share of the data bits that arrive inverted, 0..1.
-        delay_s: seconds more than the usual 20 us that everything takes.
+        delay_s: seconds more than the array's cables usually take.
         baud: how fast bytes are on it; 0: as the USART at either end is set.
     """
 
@@ -56,6 +59,8 @@ class Array:
         switch_on_s: Sequence[float] | None = None,
         bootloader: Path | str | None = None,
         threads: int = 1,
+        cable_delay_s: float = CABLE_DELAY_S,
+        translated: bool = True,
     ) -> None:
         """Builds the tiles; nothing runs yet.
 
@@ -67,11 +72,14 @@ class Array:
             switch_on_s: when each tile is switched on, in seconds; default 0.
             bootloader: image for the boot section; with one, the tiles start there after every reset.
             threads: how many share the work; they change nothing else.
+            cable_delay_s: seconds from a pin to the pin at the other end of a cable, 20e-6 to 260e-6; the
+                longer, the less time the emulation takes.
+            translated: whether to use a translation of the image, if there is one; it changes nothing else.
 
         Raises:
             BuildError: the emulator is not built.
             BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
-            UsageError: the lists do not fit the number of tiles.
+            UsageError: the lists do not fit the number of tiles, or the delay is out of range.
         """
         self._handle: Any = None
         ppm, switch_on_s = list(ppm or [0.0] * tiles), list(switch_on_s or [0.0] * tiles)
@@ -86,6 +94,9 @@ class Array:
             self._handle = call("array_new", path, boot, tiles, ppm, switch_on_s)
         except UsageError as error:
             raise image_error(str(error)) from None
+        call("array_set_cable_delay", self._handle, cable_delay_s)
+        self._translator = Translator(Path(image), translated)
+        self._translator.use(self._handle)
         self._tiles = [EmulatedTile(self, index) for index in range(tiles)]
         for link in links:
             self.link(*link)
@@ -101,6 +112,11 @@ class Array:
         if self._handle is None:
             raise UsageError("the array is closed; build another")
         return self._handle
+
+    @property
+    def is_translated(self) -> bool:
+        """Whether the tiles execute translated blocks; `tilenca.emulator.translation` says what that is."""
+        return self._translator.in_use
 
     # --- tiles and cables, also while it runs ---
 
@@ -180,7 +196,9 @@ class Array:
         Raises:
             TilencaError: a tile stopped at a fault; the message names tile, place and fact.
         """
-        if call("array_run", self.handle, seconds):
+        stopped = call("array_run", self.handle, seconds)
+        self._translator.note(self._handle, seconds * len(self))
+        if stopped:
             raise TilencaError(next(tile.fault for tile in self._tiles if tile.fault))
 
     @property

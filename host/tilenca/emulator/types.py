@@ -53,7 +53,7 @@ class DisplayChange:
     """A change of a tile's display.
 
     Attributes:
-        time_s: seconds since the array began, to 16 us.
+        time_s: seconds since the array began, to 256 us.
         segments: bit mask as in `tilenca.shapes.glyphs`.
     """
 

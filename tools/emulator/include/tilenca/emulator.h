@@ -27,7 +27,7 @@ typedef struct tilenca_array tilenca_array;
 typedef struct tilenca_wire_fault {
     double loss;    // share of the bytes that never arrive, 0..1
     double flip;    // share of the data bits that arrive inverted, 0..1
-    double delay_s; // more than the usual 20 us, 0..1
+    double delay_s; // more than any cable takes, 0..1
     double baud;    // of the bytes on it; 0: that of the USART at either end
 } tilenca_wire_fault;
 
@@ -79,9 +79,13 @@ TILENCA_API int tilenca_array_size(tilenca_array* array);
 TILENCA_API int tilenca_array_add_tile(tilenca_array* array, double ppm, double switch_on_s);
 // Switches a tile off for good and takes its cables away. The others keep their indices, and so does it.
 TILENCA_API int tilenca_array_remove_tile(tilenca_array* array, unsigned tile);
+// How long a cable takes, 20 us to 260 us (usually the most); before the array runs. Tiles run in turns that
+// are a little shorter: longer ones cost less. A snapshot brings its own along.
+TILENCA_API int tilenca_array_set_cable_delay(tilenca_array* array, double seconds);
 // How many threads share the work, 1 to 1024. They change how long it takes, and nothing else.
 TILENCA_API int tilenca_array_set_threads(tilenca_array* array, unsigned threads);
-// Runs all tiles; returns how many stand still after a fault. Ends early where a tile meets a breakpoint.
+// Runs all tiles, in steps of 16 us; returns how many stand still after a fault. Ends early where a tile
+// meets a breakpoint.
 TILENCA_API int tilenca_array_run(tilenca_array* array, double seconds);
 TILENCA_API double tilenca_array_time(tilenca_array* array);
 // A snapshot of all that decides about the future: sets `bytes`, valid until the next call of this or until
@@ -95,6 +99,16 @@ TILENCA_API int tilenca_array_symbol(tilenca_array* array, const char* name, uin
                                      uint32_t* size);
 // The function that contains a byte of flash; "": none. Valid until the next call of this.
 TILENCA_API const char* tilenca_array_function_at(tilenca_array* array, uint32_t address);
+
+// --- translated blocks: the same results in less time ---
+
+// Counts instructions from now on, for tilenca_array_translated; before the array runs, on one thread.
+TILENCA_API int tilenca_array_count_instructions(tilenca_array* array);
+// C++ that does what the instructions that were counted most do, for a compiler that makes a shared library
+// of it. Valid until the next call of this.
+TILENCA_API const char* tilenca_array_translated(tilenca_array* array);
+// Executes the blocks of such a library, of the same image and version of the emulator.
+TILENCA_API int tilenca_array_use_translation(tilenca_array* array, const char* path);
 
 // --- cables ---
 

@@ -2,6 +2,7 @@
 #include "api/private.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace tilenca::c_api;
 
@@ -39,7 +40,7 @@ tilenca_array* new_array(const char* image, const char* bootloader, unsigned til
     for (unsigned i = 0; i < tiles; i++) {
         clocks.push_back(clock_of(ppm[i], switch_on_s[i]));
     }
-    return new tilenca_array{tilenca::Array(contents, fuses, clocks), {}, {}, {}, {}};
+    return new tilenca_array{tilenca::Array(contents, fuses, clocks), {}, {}, {}, {}, {}};
 }
 
 } // namespace
@@ -69,6 +70,17 @@ int tilenca_array_remove_tile(tilenca_array* array, unsigned tile) {
     return attempted([&] {
         tile_of(array, tile);
         array->array.remove_tile(tile);
+    });
+}
+
+int tilenca_array_set_cable_delay(tilenca_array* array, double seconds) {
+    return attempted([&] {
+        const double ticks = std::round(seconds * tilenca::kTicksPerSecond);
+        check_range("a cable's delay in ticks of 16 MHz", ticks, tilenca::kLeastDelayTicks,
+                    tilenca::kMostDelayTicks);
+        if (!array_of(array).set_cable_delay(ticks)) {
+            throw Refusal("cables keep their delay once the array runs");
+        }
     });
 }
 
@@ -129,6 +141,37 @@ const char* tilenca_array_function_at(tilenca_array* array, uint32_t address) {
     return guarded<const char*>(nullptr, [&] {
         array->function = array_of(array).image().function_at(address);
         return array->function.c_str();
+    });
+}
+
+// --- translated blocks ---
+
+int tilenca_array_count_instructions(tilenca_array* array) {
+    return attempted([&] {
+        if (array_of(array).now() > 0) {
+            throw Refusal("instructions are counted from the array's beginning, or not at all");
+        }
+        array_of(array).count_instructions();
+    });
+}
+
+const char* tilenca_array_translated(tilenca_array* array) {
+    return guarded<const char*>(nullptr, [&] {
+        array_of(array);
+        array->translated = array->array.translated();
+        if (array->translated.empty()) {
+            throw Refusal("the array's instructions are not counted");
+        }
+        return array->translated.c_str();
+    });
+}
+
+int tilenca_array_use_translation(tilenca_array* array, const char* path) {
+    return attempted([&] {
+        const std::string name = &present(path, "the translation's path");
+        if (!array_of(array).use_translation(name)) {
+            throw Refusal(name + ": a translation of another image");
+        }
     });
 }
 

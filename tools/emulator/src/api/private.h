@@ -18,7 +18,7 @@ struct tilenca_array {
     tilenca::Array array;
     std::deque<std::string> faults; // what tilenca_tile_fault gives out must live on
     std::vector<uint8_t> snapshot;
-    std::string function;
+    std::string function, translated;
     std::vector<Eye> eyes;
 };
 

@@ -38,7 +38,7 @@ unsigned Array::add_tile(const Clock& clock) {
 // --- cables ---
 
 void Array::connect(End from, End to) {
-    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, writing_));
+    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, delay_, writing_));
 }
 
 void Array::rebuild_order() {
@@ -92,8 +92,7 @@ bool Array::unlink(End end) {
             continue;
         }
         Tile& to = tile(wire->to().tile);
-        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + kLinkLatencyTicks),
-                            true);
+        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + delay_), true);
     }
     wires_.erase(std::remove_if(wires_.begin(), wires_.end(),
                                 [&](const auto& wire) { return wire.get() == there || wire.get() == back; }),
@@ -115,6 +114,15 @@ void Array::remove_tile(unsigned index) {
 
 // --- time ---
 
+bool Array::set_cable_delay(double ticks) {
+    if (now_ > 0) {
+        return false;
+    }
+    delay_ = ticks;
+    turn_ = turn_of(ticks);
+    return true;
+}
+
 // The time until which every tile sleeps; the present if one does not.
 double Array::idle_until() {
     double soonest = HUGE_VAL;
@@ -130,17 +138,19 @@ double Array::idle_until() {
     return soonest;
 }
 
-void Array::run_tile_until(unsigned index, double end) {
+void Array::run_tile_until(unsigned index, double end, double its_turn_end) {
     bool has_mail = false;
     for (Wire* wire : into_[index]) {
         has_mail = wire->deliver() || has_mail;
     }
     if (has_mail || sleeps_until_[index] < end) {
         Tile& tile = *tiles_[index];
-        tile.run_until(end);
-        // A drifting clock tells the time of waking until its next step only.
-        const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
-        sleeps_until_[index] = tile.clock().drifts() ? std::min(tile.wakes_at(), step) : tile.wakes_at();
+        tile.run_until(end, its_turn_end);
+        sleeps_until_[index] = tile.wakes_at();
+        if (tile.clock().drifts()) { // it tells the time of waking until its next step only
+            const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
+            sleeps_until_[index] = std::min(sleeps_until_[index], step);
+        }
     }
     for (Wire* wire : out_of_[index]) {
         if (wire->has_fault()) {
@@ -150,20 +160,22 @@ void Array::run_tile_until(unsigned index, double end) {
 }
 
 void Array::run_tile(unsigned index) {
-    for (double end = turn_begin_ + kQuantumTicks; end <= now_; end += kQuantumTicks) {
-        run_tile_until(index, end);
+    for (double end = turn_begin_; end < now_;) {
+        const double its_turn_end = turn_end(end);
+        end = std::min(now_, its_turn_end);
+        run_tile_until(index, end, its_turn_end);
     }
 }
 
 // Every tile is brought to the present; from here on anything may be done to it.
 void Array::catch_up() {
     for (auto& tile : tiles_) {
-        tile->run_until(now_);
+        tile->run_until(now_, turn_end(now_ - 1));
     }
     sleeps_until_.assign(tiles_.size(), 0);
 }
 
-void Array::run_quanta() {
+void Array::run_turn() {
     writing_ = 1 - writing_;
     if (workers_ != nullptr) {
         workers_->share(size());
@@ -184,11 +196,11 @@ void Array::run_for(double ticks) {
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
     catch_up(); // one that was halted has to
     while (now_ < end && !has_halted()) {
-        // Tiles that nothing joins can take many turns at once.
-        const double turns = wires_.empty() ? kTurnsAlone * kQuantumTicks : kQuantumTicks;
         turn_begin_ = std::min(end - kQuantumTicks, std::floor(idle_until() / kQuantumTicks) * kQuantumTicks);
-        now_ = std::min(end, turn_begin_ + turns);
-        run_quanta();
+        // Tiles that nothing joins can take many turns at once.
+        const double more = wires_.empty() ? kTurnsAlone * turn_ : 0;
+        now_ = std::min(end, turn_end(turn_begin_) + more);
+        run_turn();
     }
     catch_up();
     asked_for_ = now_ < end ? now_ : asked_for_;

@@ -1,5 +1,5 @@
-// Many tiles, wired, in step: each runs a quantum of time, then the next; what one sends reaches another only
-// after a latency longer than the quantum. So nobody can receive what has not been sent yet, and the outcome
+// Many tiles, wired, in step: each runs a turn, then the next; what one sends reaches another only after a
+// delay longer than a turn. So nobody can receive what has not been sent yet, and the outcome
 // does not depend on the order in which the tiles run, nor on how many threads they share.
 #pragma once
 
@@ -14,8 +14,10 @@
 
 namespace tilenca {
 
-constexpr unsigned kMostTiles = 4096; // of an array
-constexpr double kQuantumTicks = 256; // the latency's margin covers the last instruction of a quantum
+constexpr unsigned kMostTiles = 4096;     // of an array
+constexpr double kQuantumTicks = 256;     // time stands still only at multiples of this
+constexpr double kUsualDelayTicks = 4160; // of a cable: 260 us
+constexpr double kLeastDelayTicks = 320, kMostDelayTicks = 4160;
 
 class Array {
   public:
@@ -37,12 +39,22 @@ class Array {
     // Off for good, and without cables; the other tiles keep their indices.
     void remove_tile(unsigned index);
 
-    // Runs on, in whole quanta on a fixed grid: how a caller cuts time into calls changes nothing. A tile
-    // that meets a breakpoint ends it early; the next call goes on from there.
+    // What a cable takes, in ticks; only before time begins. False: it has begun.
+    bool set_cable_delay(double ticks);
+    double cable_delay() const { return delay_; }
+    // Runs on, in whole quanta; turns lie on a fixed grid, so how a caller cuts time into calls changes
+    // nothing. A tile that meets a breakpoint ends it early; the next call goes on from there.
     void run_for(double ticks);
     // A whole number of quanta: less than one beyond all that was asked for.
     double now() const { return now_; }
     void set_threads(unsigned threads);
+
+    // Counts instructions from now on; before the array runs.
+    void count_instructions();
+    // C++ that does what the instructions that were counted most do.
+    std::string translated() const;
+    // Executes the blocks of a translation in place of instructions. False: it is of another image.
+    bool use_translation(const std::string& path);
 
     Tile& tile(unsigned index) { return *tiles_[index]; }
     unsigned size() const { return static_cast<unsigned>(tiles_.size()); }
@@ -57,9 +69,13 @@ class Array {
     void load(const uint8_t* bytes, size_t count);
 
   private:
-    void run_quanta();
+    // As long as can be. The delay's margin covers the last instruction of a turn.
+    static double turn_of(double delay) { return std::floor((delay - 64) / kQuantumTicks) * kQuantumTicks; }
+    void run_turn();
+    // The end of the turn that a moment lies in.
+    double turn_end(double ticks) const { return (std::floor(ticks / turn_) + 1) * turn_; }
     void run_tile(unsigned index);
-    void run_tile_until(unsigned index, double end);
+    void run_tile_until(unsigned index, double end, double turn_end);
     void catch_up();
     void connect(End from, End to);
     void rebuild_order();
@@ -78,7 +94,9 @@ class Array {
     std::unique_ptr<Workers> workers_;
     unsigned writing_ = 0; // which of a wire's two lists
     double now_ = 0;
-    double turn_begin_ = 0; // of the quanta under way, which end now
+    double delay_ = kUsualDelayTicks;
+    double turn_ = turn_of(kUsualDelayTicks);
+    double turn_begin_ = 0; // of the time under way, which ends now
     double asked_for_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace tilenca {
 namespace {
 
 constexpr uint32_t kMagic = 0x53434C54; // "TLCS"
-constexpr uint32_t kVersion = 1;        // one more whenever any state() changes
+constexpr uint32_t kVersion = 2;        // one more whenever any state() changes
 
 // FNV-1a.
 uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u) {
@@ -38,7 +38,7 @@ std::vector<uint8_t> Array::save() {
         End from = wire->from(), to = wire->to();
         archive(from.tile, from.side, to.tile, to.side);
     }
-    archive(now_, asked_for_);
+    archive(now_, asked_for_, delay_);
     for (const auto& one : tiles_) {
         archive(*one);
     }
@@ -94,7 +94,11 @@ void Array::load(const uint8_t* bytes, size_t count) {
         connect(from, to);
     }
     rebuild_order();
-    archive(now_, asked_for_);
+    archive(now_, asked_for_, delay_);
+    if (!(delay_ >= kLeastDelayTicks && delay_ <= kMostDelayTicks)) {
+        throw avr::ArchiveError("its cables take longer than any can");
+    }
+    turn_ = turn_of(delay_);
     for (const auto& one : tiles_) {
         archive(*one);
     }

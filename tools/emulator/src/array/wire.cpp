@@ -10,9 +10,9 @@ constexpr double kUnknownBaud = 38400;
 
 } // namespace
 
-Wire::Wire(Tile& from, Tile& to, End from_end, End to_end, const unsigned& writing)
+Wire::Wire(Tile& from, Tile& to, End from_end, End to_end, const double& delay, const unsigned& writing)
     : from_(from), to_(to), from_end_(from_end), to_end_(to_end),
-      from_pin_(Tile::transmit_pin(from_end.side)), to_pin_(Tile::receive_pin(to_end.side)),
+      from_pin_(Tile::transmit_pin(from_end.side)), to_pin_(Tile::receive_pin(to_end.side)), latency_(delay),
       writing_(writing) {
     if (to_.chip().gpio().line(to_pin_) == nullptr) {
         to_.chip().gpio().attach_line(to_pin_);
@@ -30,7 +30,7 @@ void Wire::edge(avr::PinId, uint64_t cycle, bool level) {
         return;
     }
     if (!fault_.harms()) {
-        sent_[writing_].push_back({ticks + kLinkLatencyTicks + fault_.delay, level});
+        sent_[writing_].push_back({ticks + latency_ + fault_.delay, level});
         return;
     }
     while (!raw_.empty() && raw_.back().ticks >= ticks) {
@@ -51,7 +51,7 @@ void Wire::set_connected(bool connected, double now) {
     const bool idle = from_.bit_ticks(from_pin_) != 0; // a USART's line, but for the frame that is being sent
     raw_level_ = out_level_ =
         !connected || idle || from_.chip().gpio().level(from_pin_, from_.chip().cpu().cycle);
-    sent_[writing_].push_back({now + kLinkLatencyTicks, out_level_});
+    sent_[writing_].push_back({now + latency_, out_level_});
 }
 
 void Wire::set_fault(const WireFault& fault, uint64_t seed) {
@@ -59,7 +59,7 @@ void Wire::set_fault(const WireFault& fault, uint64_t seed) {
     random_ = avr::Random(seed);
     if (!fault.harms()) {
         for (const Edge& edge : raw_) {
-            sent_[writing_].push_back({edge.ticks + kLinkLatencyTicks + fault.delay, edge.level});
+            sent_[writing_].push_back({edge.ticks + latency_ + fault.delay, edge.level});
         }
         raw_.clear();
     }
@@ -111,7 +111,7 @@ void Wire::send(double ticks) {
     const bool level = muted_ || raw_level_ != flipping_;
     if (level != out_level_) {
         out_level_ = level;
-        sent_[writing_].push_back({ticks + kLinkLatencyTicks + fault_.delay, level});
+        sent_[writing_].push_back({ticks + latency_ + fault_.delay, level});
     }
 }
 

@@ -1,7 +1,7 @@
 // One direction of a cable: what leaves one tile's pin arrives at another's, late, and not always whole.
 //
-// The sending tile writes, the receiving tile reads what was written a quantum ago: so the two may run at the
-// same time on two processors.
+// The sending tile writes, the receiving tile reads what was written in the last turn: so the two may run at
+// the same time on two processors.
 #pragma once
 
 #include "avr/random.h"
@@ -10,8 +10,6 @@
 #include <deque>
 
 namespace tilenca {
-
-constexpr double kLinkLatencyTicks = 320; // 20 us
 
 // What goes wrong on a wire. Bytes are found by their start bits, as 8N1.
 struct WireFault {
@@ -33,7 +31,8 @@ class Wire : public avr::EdgeListener {
         uint64_t bytes = 0, lost = 0, flipped = 0; // bytes seen and lost, bits flipped; only on a faulty wire
     };
 
-    Wire(Tile& from, Tile& to, End from_end, End to_end, const unsigned& writing);
+    // delay: ticks that everything takes; writing: which of the two lists this turn writes.
+    Wire(Tile& from, Tile& to, End from_end, End to_end, const double& delay, const unsigned& writing);
     ~Wire() override;
     Wire(const Wire&) = delete;
     Wire& operator=(const Wire&) = delete;
@@ -48,7 +47,7 @@ class Wire : public avr::EdgeListener {
     void edge(avr::PinId pin, uint64_t cycle, bool level) override;
     // Of the sender's turn: all before `end` is certain.
     void settle(double end);
-    // Of the receiver's turn: hands over what was sent before this quantum; false: nothing was.
+    // Of the receiver's turn: hands over what was sent before this turn; false: nothing was.
     bool deliver() { return !sent_[1 - writing_].empty() && hand_over(); }
     // When it next has to be looked at, in ticks: at once, if something waits to be delivered.
     double pending() const;
@@ -71,7 +70,8 @@ class Wire : public avr::EdgeListener {
     Tile &from_, &to_;
     End from_end_, to_end_;
     avr::PinId from_pin_, to_pin_;
-    const unsigned& writing_; // which of the two lists is being written in this quantum
+    const double& latency_;
+    const unsigned& writing_;
     std::vector<Edge> sent_[2];
     bool connected_ = true;
 

@@ -59,11 +59,15 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
     for (uint16_t address = kIoStart; address < kSramStart; address++) {
         const bool system = address == kGtccr || address == kSmcr || address == kMcucr || address == kSreg ||
                             address == kClkpr || address == kPrr0 || address == kPrr1;
-        if (system || is_unmodelled(address)) {
-            cpu_.special[address] = kReadsThroughBus | kWritesThroughBus;
+        if (system || is_unmodelled(address)) { // stored bytes, but for SREG
+            cpu_.special[address] =
+                address == kSreg ? kReadsThroughBus | kWritesThroughBus : kWritesThroughBus;
         }
     }
     cpu_.special[kSpl] = cpu_.special[kSph] = kWritesThroughBus;
+    for (size_t slot = 0; slot < kSlots; slot++) {
+        at_slot_[slot] = &find_at_slot(static_cast<Slot>(slot));
+    }
     join();
     reset(ResetCause::PowerOn);
 }
@@ -73,7 +77,8 @@ Chip::~Chip() = default;
 void Chip::attach(Peripheral& peripheral) {
     for (const uint16_t address : peripheral.registers()) {
         at_address_[address] = &peripheral;
-        cpu_.special[address] = kReadsThroughBus | kWritesThroughBus;
+        const bool is_stored = peripheral.reads_as_stored(address);
+        cpu_.special[address] = is_stored ? kWritesThroughBus : kReadsThroughBus | kWritesThroughBus;
     }
     for (const uint8_t vector : peripheral.vectors()) {
         at_vector_[vector] = &peripheral;

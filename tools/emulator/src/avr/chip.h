@@ -29,7 +29,7 @@ struct MarkPassed {
     uint64_t cycle;
 };
 
-class Chip : private Bus {
+class Chip final : private Bus {
   public:
     Chip(std::shared_ptr<Program> program, const Fuses& fuses);
     ~Chip() override;
@@ -103,7 +103,7 @@ class Chip : private Bus {
     void forget_past(PinId pin);
     void write_system(uint16_t address, uint8_t value, uint64_t cycle);
     void synchronise_prescalers(uint8_t value, uint64_t cycle);
-    Peripheral& at_slot(Slot slot);
+    Peripheral& find_at_slot(Slot slot);
 
     const std::shared_ptr<Program> image_; // as loaded
     std::shared_ptr<Program> program_;
@@ -123,6 +123,7 @@ class Chip : private Bus {
     std::array<std::unique_ptr<Usart>, 4> usarts_;
     std::array<Peripheral*, kSramStart> at_address_{};
     std::array<Peripheral*, kVectors> at_vector_{};
+    std::array<Peripheral*, kSlots> at_slot_{};
     std::vector<Peripheral*> all_;
     uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0;
     uint16_t stack_before_ = 0; // the stack pointer while its two bytes are being written

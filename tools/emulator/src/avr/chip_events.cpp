@@ -5,7 +5,7 @@
 
 namespace tilenca::avr {
 
-Peripheral& Chip::at_slot(Slot slot) {
+Peripheral& Chip::find_at_slot(Slot slot) {
     const auto index = static_cast<unsigned>(slot);
     if (slot >= Slot::Timer0 && slot <= Slot::Timer5) {
         return *timers_[index - static_cast<unsigned>(Slot::Timer0)];
@@ -34,7 +34,7 @@ Peripheral& Chip::at_slot(Slot slot) {
 uint64_t Chip::serve_events(uint64_t cycle) {
     uint64_t due = 0;
     for (Slot slot = schedule_.next(&due); due <= cycle; slot = schedule_.next(&due)) {
-        at_slot(slot).on_event(slot, due);
+        at_slot_[static_cast<size_t>(slot)]->on_event(slot, due);
         if (watchdog_->wants_reset()) {
             reset(ResetCause::Watchdog);
         }

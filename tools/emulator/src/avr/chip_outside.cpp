@@ -35,6 +35,9 @@ double Chip::duty(PinId pin) {
         return 0;
     }
     for (auto& timer : timers_) {
+        if (!gpio_->is_taken(pin)) {
+            break;
+        }
         if (const double share = timer->duty(pin, cpu_.cycle); share >= 0) {
             return share;
         }

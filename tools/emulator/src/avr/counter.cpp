@@ -26,6 +26,7 @@ uint64_t Counter::period() const {
 
 void Counter::set_mode(const WaveMode& mode) {
     mode_ = mode;
+    free_ticks_ = 0;
     if (!is_pwm()) {
         load_buffers();
     }
@@ -34,6 +35,7 @@ void Counter::set_mode(const WaveMode& mode) {
 
 void Counter::set_count(uint16_t count) {
     count_ = count;
+    free_ticks_ = 0;
     blocked_ = true;
 }
 
@@ -41,6 +43,7 @@ void Counter::set_compare(unsigned channel, uint16_t value) {
     buffers_[channel] = value;
     if (!is_pwm()) {
         compares_[channel] = value;
+        free_ticks_ = 0;
     }
 }
 
@@ -68,7 +71,12 @@ bool Counter::is_settled() const {
     return count_ <= top() && (!is_pwm() || compares_ == buffers_);
 }
 
-void Counter::advance(uint64_t ticks) {
+void Counter::advance_far(uint64_t ticks) {
+    if (ticks == free_ticks_ && ticks != 0) { // as most events are: just there
+        step(ticks);
+        free_ticks_ = static_cast<uint32_t>(ticks_to_boundary());
+        return;
+    }
     while (ticks != 0 && !is_settled()) {
         ticks -= step(ticks);
     }
@@ -81,12 +89,14 @@ void Counter::advance(uint64_t ticks) {
     while (ticks != 0) {
         ticks -= step(ticks);
     }
+    free_ticks_ = static_cast<uint32_t>(ticks_to_boundary());
 }
 
 // Runs to the next value at which anything can happen and leaves it, or as far as `ticks` go; returns the
 // ticks taken.
 uint64_t Counter::step(uint64_t ticks) {
-    const uint64_t whole = ticks_to_boundary();
+    const uint64_t whole = free_ticks_ != 0 ? free_ticks_ : ticks_to_boundary();
+    free_ticks_ = 0;
     const uint64_t taken = std::min(whole, ticks);
     const auto passed = static_cast<uint16_t>(taken == whole ? whole - 1 : taken);
     count_ = static_cast<uint16_t>(down_ ? count_ - passed : count_ + passed);
@@ -244,6 +254,7 @@ void Counter::capture_now() {
 void Counter::state(Archive& archive) {
     archive(mode_.wave, mode_.top, mode_.fixed_top, count_, capture_, down_, blocked_, compares_, buffers_,
             actions_, levels_, flags);
+    free_ticks_ = 0;
 }
 
 } // namespace tilenca::avr

@@ -31,12 +31,23 @@ class Counter {
     void set_output(unsigned channel, uint8_t action) { actions_[channel] = action; }
     void set_count(uint16_t count);
     void set_compare(unsigned channel, uint16_t value);
-    void set_capture(uint16_t value) { capture_ = value; }
+    void set_capture(uint16_t value) {
+        capture_ = value;
+        free_ticks_ = 0;
+    }
     void force_compare(unsigned channel) { act(channel); }
     // An edge of the capture unit's input.
     void capture_now();
 
-    void advance(uint64_t ticks);
+    void advance(uint64_t ticks) {
+        if (ticks < free_ticks_) {
+            count_ = static_cast<uint16_t>(down_ ? count_ - ticks : count_ + ticks);
+            free_ticks_ -= static_cast<uint32_t>(ticks);
+            blocked_ = blocked_ && ticks == 0;
+        } else {
+            advance_far(ticks);
+        }
+    }
     // Ticks until one of the flags in `mask` is set, or a buffered compare value takes effect; 0: never.
     uint64_t ticks_to_flag(uint8_t mask) const;
     // Ticks until an output may change.
@@ -60,6 +71,7 @@ class Counter {
     bool toggles(unsigned channel) const { return actions_[channel] == 1; }
     uint64_t period() const;
     bool is_settled() const;
+    void advance_far(uint64_t ticks);
     uint64_t step(uint64_t ticks);
     uint64_t ticks_to_boundary() const;
     uint64_t ticks_to_leave(uint16_t value, bool either_way) const;
@@ -70,6 +82,7 @@ class Counter {
     void load_buffers() { compares_ = buffers_; }
 
     uint16_t max_;
+    uint32_t free_ticks_ = 0; // until the count reaches a value at which anything happens; 0: not known
     WaveMode mode_;
     uint16_t count_ = 0;
     uint16_t capture_ = 0;

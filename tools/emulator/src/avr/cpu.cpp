@@ -34,10 +34,7 @@ uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, ui
         return cpu->data[address];
     }
     if (address == kStatus) {
-        cpu->carry = carry;
-        cpu->zero = zero;
-        cpu->nvh = nvh;
-        return cpu->status();
+        return cpu->status(carry, zero, nvh);
     }
     if (address >= kDataBytes) {
         cpu->bus->address_outside_memory(address, false);
@@ -53,13 +50,7 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
     cpu->zero = zero;
     cpu->nvh = nvh;
     if (address == kStatus) {
-        if ((value & 0x80) != 0 && !cpu->interrupts_on) {
-            cpu->held_until = cycle + 1;
-            if (cpu->requests != 0) {
-                cpu->end_soon();
-            }
-        }
-        cpu->set_status(value);
+        write_status(cpu, value, cycle);
     } else if (address >= kDataBytes) {
         cpu->bus->address_outside_memory(address, true);
     } else if (address >= kIoStart && address < kSramStart &&
@@ -72,10 +63,12 @@ void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint3
 
 } // namespace ops
 
-void Cpu::use(const Program& image) {
+void Cpu::use(const Program& program_image) {
     const uint32_t word = program == nullptr ? 0 : pc();
-    program = image.instructions();
-    flash = image.bytes();
+    program = program_image.instructions();
+    image = &program_image;
+    counts = program_image.counts();
+    flash = program_image.bytes();
     at = program + word;
 }
 
@@ -93,35 +86,6 @@ void Cpu::reset(uint32_t start_word) {
     end_soon();
 }
 
-uint8_t Cpu::status() const {
-    const bool negative = ops::is_negative(nvh), overflow = ops::is_overflow(nvh);
-    return static_cast<uint8_t>(carry | (zero == 0) << 1 | negative << 2 | overflow << 3 |
-                                ops::is_signed_less(nvh) << 4 | ops::is_half(nvh) << 5 | transfer << 6 |
-                                interrupts_on << 7);
-}
-
-void Cpu::set_status(uint8_t value) {
-    carry = value & 1;
-    zero = (value & 2) == 0;
-    const bool sign_differs = ((value >> 4 ^ value >> 3 ^ value >> 2) & 1) != 0;
-    nvh = ops::pack((value & 4u) << 5, (value & 8u) << 4, (value & 0x20u) >> 1) | uint32_t{sign_differs}
-                                                                                      << 31;
-    transfer = (value & 0x40) != 0;
-    interrupts_on = (value & 0x80) != 0;
-}
-
-void Cpu::request(uint8_t vector, bool active) {
-    const uint64_t bit = uint64_t{1} << vector;
-    if (!active) {
-        requests &= ~bit;
-    } else if ((requests & bit) == 0) {
-        requests |= bit;
-        if (interrupts_on) {
-            end_soon();
-        }
-    }
-}
-
 void Cpu::take_interrupt() {
     const auto vector = static_cast<uint8_t>(__builtin_ctzll(requests));
     if (asleep) {
@@ -135,11 +99,17 @@ void Cpu::take_interrupt() {
     interrupts_on = false;
     const uint32_t word = pc();
     uint16_t top = ops::pair(this, ops::kStackPointer);
-    if (!grow_stack(top, static_cast<uint16_t>(top - 2))) {
+    const bool is_plain = ops::is_plain_push(this, top, 3);
+    if (!is_plain && !grow_stack(top, static_cast<uint16_t>(top - 2))) {
         return;
     }
     for (unsigned i = 0; i < 3; i++, top--) {
-        ops::write_slow(this, top, static_cast<uint8_t>(word >> (8 * i)), cycle, carry, zero, nvh);
+        const auto byte = static_cast<uint8_t>(word >> (8 * i));
+        if (is_plain) {
+            data[top] = byte;
+        } else {
+            ops::write_slow(this, top, byte, cycle, carry, zero, nvh);
+        }
     }
     ops::set_pair(this, ops::kStackPointer, top);
     at = program + vector_base + vector * 2;
@@ -148,7 +118,8 @@ void Cpu::take_interrupt() {
 
 // Executes instructions up to `limit`, at least one.
 void Cpu::execute() {
-    at->run(this, at, cycle, carry, zero, nvh);
+    const Handler first = cycle < limit ? at->run : image->alone(pc());
+    first(this, at, cycle, carry, zero, nvh);
     if (!trap_hit) {
         return;
     }
@@ -171,7 +142,7 @@ void Cpu::leave_breakpoint() {
 
 void Cpu::run(uint64_t until) {
     while (cycle < until && fault.empty() && !halted && !yields) {
-        const uint64_t next_event = bus->serve_events(cycle);
+        const uint64_t next_event = event_due > cycle ? event_due : bus->serve_events(cycle);
         const bool wanted = requests != 0 && interrupts_on;
         if (wanted && cycle > held_until) {
             take_interrupt();

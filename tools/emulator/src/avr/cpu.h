@@ -49,6 +49,8 @@ struct Cpu {
     uint64_t limit = 0;          // the cycle at which the running instructions hand control back
     uint8_t special[kSramStart]; // kReadsThroughBus, kWritesThroughBus
     const Instruction* program = nullptr;
+    const Program* image = nullptr; // which `program` belongs to
+    Counts* counts = nullptr;       // of its instructions, if they are counted
     const uint8_t* flash = nullptr;
     uint32_t flash_limit = 0; // what lies beyond is not to be read without asking the bus
     // Pushes into [stack_low, stack_low + stack_room) are plain; all others are looked at.
@@ -60,7 +62,8 @@ struct Cpu {
     uint64_t cycle = 0;
     uint32_t carry = 0, zero = 1, nvh = 0;
 
-    uint64_t requests = 0; // bit v: interrupt vector v asks to be served
+    uint64_t event_due = 0; // of the next event; 0: not known, the bus has to be asked
+    uint64_t requests = 0;  // bit v: interrupt vector v asks to be served
     uint64_t held_until =
         0; // no interrupt is taken at or before this cycle: the instruction after SEI runs first
     uint64_t sleep_cycles = 0;
@@ -94,11 +97,22 @@ struct Cpu {
     void step();
     // Goes on from a breakpoint: the instruction there is executed, and no other.
     void leave_breakpoint();
-    uint8_t status() const;
+    uint8_t status() const { return status(carry, zero, nvh); }
+    uint8_t status(uint32_t with_carry, uint32_t with_zero, uint32_t with_nvh) const;
     void set_status(uint8_t value);
     uint32_t pc() const { return static_cast<uint32_t>(at - program); }
     // Raises or withdraws a request; noticed before the next instruction.
-    void request(uint8_t vector, bool active);
+    void request(uint8_t vector, bool active) {
+        request_all(uint64_t{1} << vector, uint64_t{active} << vector);
+    }
+    // The same for all vectors of a mask: those in `asking` ask, the others of the mask do not.
+    void request_all(uint64_t mask, uint64_t asking) {
+        const uint64_t fresh = asking & ~requests;
+        requests = (requests & ~mask) | asking;
+        if (fresh != 0 && interrupts_on) {
+            end_soon();
+        }
+    }
     void end_soon() { limit = 0; }
     void fail(const std::string& reason) {
         fault = reason;

@@ -56,6 +56,8 @@ constexpr Pattern kPatterns[] = {
     {0xFFFF, 0x95D8, Form::None, elpm},
     {0xFFFF, 0x95E8, Form::None, spm},
     {0xFFFF, 0x95F8, Form::None, spm_plus},
+    {0xFFFF, 0x9478, Form::None, sei},
+    {0xFFFF, 0x94F8, Form::None, cli},
     {0xFF8F, 0x9408, Form::StatusBit, bset},
     {0xFF8F, 0x9488, Form::StatusBit, bclr},
     {0xFF00, 0x0100, Form::MovePair, movw},
@@ -266,6 +268,8 @@ Instruction decode(uint16_t opcode, uint16_t next, uint32_t word) {
         operands(in, kPatterns[index].form, opcode, next, word);
         if (is_skip(in.run)) {
             in.jump = is_two_words(next) ? 3 : 2;
+        } else if (in.k == kStatus && (in.run == ops::in || in.run == out)) {
+            in.run = in.run == ops::in ? in_status : out_status;
         }
     }
     return in;

@@ -165,6 +165,21 @@ TILENCA_OP(bset) {
     write_slow(cpu, kStatus, old | at->r, cycle, carry, zero, nvh);
     return next(cpu, at + 1, cycle + 1, cpu->carry, cpu->zero, cpu->nvh);
 }
+// The two that programs use most take the short way; their effect is the same.
+TILENCA_OP(sei) {
+    if (!cpu->interrupts_on) {
+        cpu->interrupts_on = true;
+        cpu->held_until = cycle + 1;
+        if (cpu->requests != 0) {
+            cpu->end_soon();
+        }
+    }
+    TILENCA_NEXT(1, 1);
+}
+TILENCA_OP(cli) {
+    cpu->interrupts_on = false;
+    TILENCA_NEXT(1, 1);
+}
 TILENCA_OP(bclr) {
     const uint8_t old = read_slow(cpu, kStatus, cycle, carry, zero, nvh);
     write_slow(cpu, kStatus, static_cast<uint8_t>(old & ~at->r), cycle, carry, zero, nvh);

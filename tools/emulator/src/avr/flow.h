@@ -37,6 +37,8 @@ TILENCA_OP(brtc);
 TILENCA_OP(brie);
 TILENCA_OP(brid);
 TILENCA_OP(bset);
+TILENCA_OP(sei);
+TILENCA_OP(cli);
 TILENCA_OP(bclr);
 TILENCA_OP(bst);
 TILENCA_OP(bld);

@@ -1,19 +1,19 @@
 #include "avr/frame_reader.h"
 
-#include <cmath>
-
 namespace tilenca::avr {
 
 namespace {
 
 // The bits must be asked for in order.
 bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
-    int high = 0;
-    for (int back = 2; back >= 0; back--) {
-        const double when = sampling.decided(bit) - back * sampling.period;
-        high += line.at(static_cast<uint64_t>(std::floor(when)));
+    const double last = sampling.decided(bit);
+    const bool first = line.at(static_cast<uint64_t>(last - 2 * sampling.period));
+    const auto end = static_cast<uint64_t>(last);
+    if (line.stays_until(end)) {
+        return first;
     }
-    return high >= 2;
+    const bool second = line.at(static_cast<uint64_t>(last - sampling.period)), third = line.at(end);
+    return first + second + third >= 2;
 }
 
 } // namespace

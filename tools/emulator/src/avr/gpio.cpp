@@ -21,13 +21,16 @@ std::vector<uint16_t> Gpio::registers() const {
 }
 
 Gpio::Port* Gpio::port_of(uint16_t address, unsigned* which) {
-    for (Port& port : ports_) {
-        if (address >= port.base && address < port.base + 3) {
-            *which = address - port.base;
-            return &port;
-        }
+    unsigned place = 0;
+    if (address >= kPortsFirst && address < kPortsEnd) {
+        place = address - kPortsFirst;
+    } else if (address >= kFarPortsFirst && address < kFarPortsEnd) {
+        place = address - kFarPortsFirst + (kPortsEnd - kPortsFirst);
+    } else {
+        return nullptr;
     }
-    return nullptr;
+    *which = place % 3;
+    return &ports_[place / 3];
 }
 
 uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
@@ -36,6 +39,12 @@ uint8_t Gpio::read(uint16_t address, uint64_t cycle) {
         return pins_as_read(*port, cycle);
     }
     return byte(address);
+}
+
+bool Gpio::reads_as_stored(uint16_t address) const {
+    const bool is_near = address >= kPortsFirst && address < kPortsEnd;
+    const bool is_pin = is_near || (address >= kFarPortsFirst && address < kFarPortsEnd);
+    return !is_pin || (address - (is_near ? kPortsFirst : kFarPortsFirst)) % 3 != 0;
 }
 
 void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
@@ -51,7 +60,8 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
         } else {
             byte(address) = value;
         }
-        output_changes_++;
+        const unsigned changed = (ddr(*port) ^ port->ddr_before) | (latch(*port) ^ port->latch_before);
+        shown_changes_ += (changed & port->shown) != 0;
         update(*port, cycle);
         return;
     } else {
@@ -71,15 +81,15 @@ uint8_t Gpio::pins_as_read(Port& port, uint64_t cycle) {
 
 uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch) {
     uint8_t outside = port.held;
-    for (unsigned bit = 0; port.has_lines >> bit != 0; bit++) {
-        if (port.lines[bit] != nullptr && !port.lines[bit]->level_at(cycle)) {
-            outside &= static_cast<uint8_t>(~(1 << bit));
-        }
+    for (unsigned lines = port.has_lines & ~ddr; lines != 0; lines &= lines - 1) {
+        const int bit = __builtin_ctz(lines);
+        outside &= static_cast<uint8_t>(~(!port.lines[bit]->level_at(cycle) << bit));
     }
     uint8_t driven = latch;
     const auto index = static_cast<uint8_t>(&port - ports_.data());
-    for (uint8_t bit = 0; port.taken >> bit != 0; bit++) {
-        if (port.sources[bit] != nullptr && (port.taken >> bit & 1) != 0) {
+    for (unsigned taken = port.taken & ddr; taken != 0; taken &= taken - 1) {
+        const auto bit = static_cast<uint8_t>(__builtin_ctz(taken));
+        if (port.sources[bit] != nullptr) {
             bool high = port.sources[bit]->pin_level({index, bit}, cycle);
             if (port.modulators[bit] != nullptr) {
                 const bool other = port.modulators[bit]->pin_level({index, bit}, cycle);
@@ -99,10 +109,10 @@ void Gpio::update(Port& port, uint64_t cycle) {
     port.levels = after;
     const auto index = static_cast<uint8_t>(&port - ports_.data());
     const auto changed = static_cast<uint8_t>(before ^ after);
-    for (uint8_t bit = 0; bit < 8; bit++) {
+    for (unsigned told = changed & port.watched_out; told != 0; told &= told - 1) {
+        const auto bit = static_cast<uint8_t>(__builtin_ctz(told));
         // What a USART has taken over is announced by it alone.
-        const bool ours = (port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr;
-        if ((changed & port.watched_out) >> bit & 1 && ours) {
+        if ((port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr) {
             tell({index, bit}, cycle, (after >> bit & 1) != 0);
         }
     }
@@ -126,7 +136,7 @@ void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycl
         port.taken |= pin.mask();
         drive_again(pin, source);
     }
-    output_changes_++;
+    note_shown(pin);
     update(port, cycle);
 }
 
@@ -147,7 +157,7 @@ void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
         first = nullptr;
     }
     second = nullptr;
-    output_changes_++;
+    note_shown(pin);
     update(port, cycle);
     if (was_silent) {
         announce(pin, cycle, level(pin, cycle));
@@ -181,6 +191,7 @@ void Gpio::reset(uint64_t cycle) {
         port.modulators.fill(nullptr);
         update(port, cycle);
     }
+    note_watched_ports();
     core_.schedule.cancel(Slot::Lines);
 }
 
@@ -202,7 +213,8 @@ void Gpio::state(Archive& archive) {
             port.watchers.fill(nullptr);
         }
     }
-    archive(output_changes_);
+    archive(shown_changes_);
+    note_watched_ports();
 }
 
 } // namespace tilenca::avr

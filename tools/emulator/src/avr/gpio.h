@@ -48,12 +48,13 @@ struct PinWatcher {
     virtual void pin_changed(PinId pin, uint64_t cycle, bool level) = 0;
 };
 
-class Gpio : public Peripheral {
+class Gpio final : public Peripheral {
   public:
     explicit Gpio(const Core& core);
 
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
+    bool reads_as_stored(uint16_t address) const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
@@ -98,8 +99,14 @@ class Gpio : public Peripheral {
     // What comes from outside, at a time that may lie a little back.
     bool input_at(PinId pin, uint64_t cycle) const;
     bool port_bit(PinId pin) const;
-    // Counts every write that changed an output: cheap to compare, to know whether to look at the pins again.
-    uint64_t output_changes() const { return output_changes_; }
+    // From now on changes of this pin count: of its direction, its port bit, or what a timer makes of it.
+    void show(PinId pin) { ports_[pin.port].shown |= pin.mask(); }
+    // Cheap to compare, to know whether to look at the shown pins again.
+    uint64_t shown_changes() const { return shown_changes_; }
+    // A timer may have changed the share of time that a pin is high.
+    void note_shown(PinId pin) { shown_changes_ += (ports_[pin.port].shown & pin.mask()) != 0; }
+    // Whether a timer or a USART drives a pin in its port's place.
+    bool is_taken(PinId pin) const { return (ports_[pin.port].taken & pin.mask()) != 0; }
 
   private:
     struct Port {
@@ -114,6 +121,7 @@ class Gpio : public Peripheral {
         uint8_t watched = 0;      // pins that a peripheral takes its input from
         uint8_t watched_in = 0;   // inputs on a line of which the next edge must be known
         uint8_t has_lines = 0;
+        uint8_t shown = 0; // pins that are looked at from time to time
         std::array<PinSource*, 8> sources{};
         // The output compare modulator: a second source; PORT decides between AND (0) and OR (1).
         std::array<PinSource*, 8> modulators{};
@@ -123,6 +131,8 @@ class Gpio : public Peripheral {
     };
 
     Port* port_of(uint16_t address, unsigned* which);
+    static constexpr uint16_t kPortsFirst = 0x20, kPortsEnd = 0x35, kFarPortsFirst = 0x100,
+                              kFarPortsEnd = 0x10C;
     uint8_t& ddr(const Port& port) const { return byte(static_cast<uint16_t>(port.base + 1)); }
     uint8_t& latch(const Port& port) const { return byte(static_cast<uint16_t>(port.base + 2)); }
     uint8_t compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch);
@@ -139,11 +149,13 @@ class Gpio : public Peripheral {
     void update_requests();
     uint8_t external_watched() const;
     void update_watched(uint64_t cycle);
+    void note_watched_ports();
     void schedule_lines(uint64_t cycle);
     uint8_t sense(unsigned number) const;
 
     std::array<Port, kPorts> ports_;
-    uint64_t output_changes_ = 0;
+    uint16_t watched_ports_ = 0; // those with a pin that is watched_in
+    uint64_t shown_changes_ = 0;
     std::function<void(uint64_t)> int0_ = [](uint64_t) {};
 };
 

@@ -14,26 +14,28 @@ void Line::push(uint64_t cycle, bool level) {
     }
 }
 
-bool Line::level_at(uint64_t cycle) const {
-    bool level = before_;
-    for (size_t i = first_; i < edges_.size() && edges_[i].cycle <= cycle; i++) {
-        level = edges_[i].level;
+// Whoever asks, asks about the present or just before: the edges in question are the last ones.
+size_t Line::first_from(uint64_t cycle) const {
+    size_t i = edges_.size();
+    while (i != first_ && edges_[i - 1].cycle >= cycle) {
+        i--;
     }
-    return level;
+    return i;
+}
+
+bool Line::level_at(uint64_t cycle) const {
+    const size_t next = first_from(cycle + 1);
+    return next == first_ ? before_ : edges_[next - 1].level;
 }
 
 const Line::Edge* Line::next_after(uint64_t cycle) const {
-    for (size_t i = first_; i < edges_.size(); i++) {
-        if (edges_[i].cycle > cycle) {
-            return &edges_[i];
-        }
-    }
-    return nullptr;
+    const size_t next = first_from(cycle + 1);
+    return next == edges_.size() ? nullptr : &edges_[next];
 }
 
 const Line::Edge* Line::falling_from(uint64_t cycle) const {
-    for (size_t i = first_; i < edges_.size(); i++) {
-        if (edges_[i].cycle >= cycle && !edges_[i].level) {
+    for (size_t i = first_from(cycle); i < edges_.size(); i++) {
+        if (!edges_[i].level) {
             return &edges_[i];
         }
     }

@@ -33,6 +33,10 @@ class Line {
             }
             return level_;
         }
+        // Whether the level of the last call is also that of `cycle`.
+        bool stays_until(uint64_t cycle) const {
+            return next_ == line_.edges_.size() || line_.edges_[next_].cycle > cycle;
+        }
 
       private:
         const Line& line_;
@@ -53,6 +57,9 @@ class Line {
     void state(Archive& archive);
 
   private:
+    // Index of the first edge at or after `cycle`.
+    size_t first_from(uint64_t cycle) const;
+
     std::vector<Edge> edges_; // alternating levels, rising times, from index first_ on
     size_t first_ = 0;
     bool before_ = true; // the level before the first edge; an idle line is high

@@ -17,6 +17,21 @@ TILENCA_OP(load_slow) {
     TILENCA_NEXT(words, 0);
 }
 
+// IN and OUT of a register that a peripheral answers for.
+TILENCA_OP(in_slow) {
+    cpu->data[at->d] = cpu->bus->read(at->k, cycle);
+    cycle += cpu->stall_cycles + 1;
+    cpu->stall_cycles = 0;
+    TILENCA_NEXT(1, 0);
+}
+
+TILENCA_OP(out_slow) {
+    cpu->bus->write(at->k, cpu->data[at->d], cycle);
+    cycle += cpu->stall_cycles + 1;
+    cpu->stall_cycles = 0;
+    TILENCA_NEXT(1, 0);
+}
+
 template <int words, int cycles>
 TILENCA_OP(store_slow) {
     cycle += cycles - 1;
@@ -156,19 +171,29 @@ TILENCA_OP(pop) {
 
 TILENCA_OP(in) {
     if (__builtin_expect(cpu->special[at->k] & kReadsThroughBus, 0)) {
-        cpu->address = at->k;
-        return load_slow<1, 1>(cpu, at, cycle, carry, zero, nvh);
+        return in_slow(cpu, at, cycle, carry, zero, nvh);
     }
     cpu->data[at->d] = cpu->data[at->k];
     TILENCA_NEXT(1, 1);
 }
 TILENCA_OP(out) {
     if (__builtin_expect(cpu->special[at->k] & kWritesThroughBus, 0)) {
-        cpu->address = at->k;
-        return store_slow<1, 1>(cpu, at, cycle, carry, zero, nvh);
+        return out_slow(cpu, at, cycle, carry, zero, nvh);
     }
     cpu->data[at->k] = cpu->data[at->d];
     TILENCA_NEXT(1, 1);
+}
+// SREG holds no byte of its own, so it is read and written by handlers of its own.
+TILENCA_OP(in_status) {
+    cpu->data[at->d] = cpu->status(carry, zero, nvh);
+    TILENCA_NEXT(1, 1);
+}
+TILENCA_OP(out_status) {
+    static_cast<void>(carry); // it and the other two are in the new SREG
+    static_cast<void>(zero);
+    static_cast<void>(nvh);
+    write_status(cpu, cpu->data[at->d], cycle);
+    return next(cpu, at + 1, cycle + 1, cpu->carry, cpu->zero, cpu->nvh);
 }
 TILENCA_OP(sbi) {
     if ((cpu->special[at->k] & kWritesThroughBus) != 0) {

@@ -29,6 +29,8 @@ TILENCA_OP(push);
 TILENCA_OP(pop);
 TILENCA_OP(in);
 TILENCA_OP(out);
+TILENCA_OP(in_status);
+TILENCA_OP(out_status);
 TILENCA_OP(sbi);
 TILENCA_OP(cbi);
 TILENCA_OP(lpm);

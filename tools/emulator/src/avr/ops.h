@@ -2,6 +2,7 @@
 #pragma once
 
 #include "avr/cpu.h"
+#include "avr/effects.h"
 
 namespace tilenca::avr::ops {
 
@@ -24,30 +25,11 @@ void stop(TILENCA_STATE, const char* reason);
     return at->run(cpu, at, cycle, carry, zero, nvh);
 }
 
-constexpr uint32_t kHalfCarryMask = 0xFF0000;
-
-// N from `result`, V from bit 7 of `overflow`, H from bit 4 of `half`; all three at most 8 bits wide.
-inline uint32_t pack(uint32_t result, uint32_t overflow, uint32_t half) {
-    return result | overflow << 8 | half << 16;
-}
-
-// A result that clears V and leaves H alone.
-inline uint32_t logic(uint32_t result, uint32_t nvh) {
-    return result | (nvh & kHalfCarryMask);
-}
-
-inline bool is_negative(uint32_t nvh) {
-    return nvh & 0x80;
-}
-inline bool is_overflow(uint32_t nvh) {
-    return nvh & 0x8000;
-}
-inline bool is_half(uint32_t nvh) {
-    return nvh & 0x100000;
-}
-inline bool is_signed_less(uint32_t nvh) {
-    return (nvh >> 7 ^ nvh >> 15 ^ nvh >> 31) & 1;
-}
+using effects::is_half;
+using effects::is_negative;
+using effects::is_overflow;
+using effects::is_signed_less;
+using effects::pack;
 
 // Two bytes rather than one 16-bit load, which the compiler would make of it: the pair is often written byte
 // by byte just before, and the host would have to wait for both stores.
@@ -75,9 +57,36 @@ inline bool is_plain_push(const Cpu* cpu, uint16_t top, uint16_t count) {
     return static_cast<uint16_t>(lowest - cpu->stack_low) + count <= cpu->stack_room;
 }
 
+// A program writes SREG, whose flags then stand in the Cpu.
+inline void write_status(Cpu* cpu, uint8_t value, uint64_t cycle) {
+    if ((value & 0x80) != 0 && !cpu->interrupts_on) {
+        cpu->held_until = cycle + 1;
+        if (cpu->requests != 0) {
+            cpu->end_soon();
+        }
+    }
+    cpu->set_status(value);
+}
+
 // Memory outside SRAM. They keep the state in `cpu` (SREG is part of memory) and add to cpu->stall_cycles.
 uint8_t read_slow(Cpu* cpu, uint16_t address, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh);
 void write_slow(Cpu* cpu, uint16_t address, uint8_t value, uint64_t cycle, uint32_t carry, uint32_t zero,
                 uint32_t nvh);
 
 } // namespace tilenca::avr::ops
+
+namespace tilenca::avr {
+
+inline uint8_t Cpu::status(uint32_t with_carry, uint32_t with_zero, uint32_t with_nvh) const {
+    return static_cast<uint8_t>(effects::status(with_carry, with_zero, with_nvh, transfer, interrupts_on));
+}
+
+inline void Cpu::set_status(uint8_t value) {
+    carry = effects::carry_of(value);
+    zero = effects::zero_of(value);
+    nvh = effects::nvh_of(value);
+    transfer = (value & 0x40) != 0;
+    interrupts_on = (value & 0x80) != 0;
+}
+
+} // namespace tilenca::avr

@@ -47,6 +47,8 @@ class Peripheral {
     virtual std::vector<uint16_t> registers() const = 0;
     virtual uint8_t read(uint16_t address, uint64_t /*cycle*/) { return byte(address); }
     virtual void write(uint16_t address, uint8_t value, uint64_t cycle) = 0;
+    // Whether reading that register is reading its stored byte: then nobody needs to ask.
+    virtual bool reads_as_stored(uint16_t /*address*/) const { return false; }
     virtual void on_event(Slot /*slot*/, uint64_t /*cycle*/) {}
     virtual std::vector<uint8_t> vectors() const { return {}; }
     virtual void interrupt_taken(uint8_t /*vector*/) {}

@@ -87,15 +87,15 @@ void Gpio::pins_changed(const Port& port, uint8_t before, uint8_t after, uint64_
 
 void Gpio::update_requests() {
     const uint8_t flags = byte(kEifr), enabled = byte(kEimsk);
-    for (uint8_t i = 0; i < 8; i++) {
-        const Port& port = ports_[i < 4 ? kPortD : kPortE];
-        const bool low = sense(i) == 0 && (port.levels >> i & 1) == 0; // INT0..3 on PD0..3, INT4..7 on PE4..7
-        core_.cpu.request(kVectorInt0 + i, (enabled >> i & 1) != 0 && (low || (flags >> i & 1) != 0));
+    uint8_t external = flags & enabled;
+    for (unsigned waiting = enabled & ~flags & 0xFFu; waiting != 0; waiting &= waiting - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(waiting));
+        const Port& port = ports_[i < 4 ? kPortD : kPortE]; // INT0..3 on PD0..3, INT4..7 on PE4..7
+        const bool low = sense(i) == 0 && (port.levels >> i & 1) == 0;
+        external |= static_cast<uint8_t>(low << i);
     }
-    for (uint8_t bank = 0; bank < 3; bank++) {
-        const bool asks = (byte(kPcifr) & byte(kPcicr)) >> bank & 1;
-        core_.cpu.request(kVectorPinChange0 + bank, asks);
-    }
+    const uint64_t changes = byte(kPcifr) & byte(kPcicr) & 7u;
+    core_.cpu.request_all(uint64_t{0x7FF} << kVectorInt0, (changes << 8 | external) << kVectorInt0);
 }
 
 // INTn sets its flag on the edge it is told to, enabled or not; a low level raises no flag, and matters only
@@ -132,28 +132,34 @@ void Gpio::update_watched(uint64_t cycle) {
             update(port, cycle);
         }
     }
+    note_watched_ports();
     schedule_lines(cycle);
     tell_sources();
 }
 
+void Gpio::note_watched_ports() {
+    watched_ports_ = 0;
+    for (unsigned i = 0; i < kPorts; i++) {
+        watched_ports_ |= static_cast<uint16_t>((ports_[i].watched_in != 0) << i);
+    }
+}
+
 void Gpio::schedule_lines(uint64_t cycle) {
     uint64_t soonest = kNever;
-    for (Port& port : ports_) {
-        for (unsigned bit = 0; port.watched_in >> bit != 0; bit++) {
-            if ((port.watched_in >> bit & 1) != 0) {
-                const Line::Edge* edge = port.lines[bit]->next_after(cycle);
-                soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
-            }
+    for (unsigned ports = watched_ports_; ports != 0; ports &= ports - 1) {
+        const Port& port = ports_[static_cast<unsigned>(__builtin_ctz(ports))];
+        for (unsigned pins = port.watched_in; pins != 0; pins &= pins - 1) {
+            const Line::Edge* edge =
+                port.lines[static_cast<unsigned>(__builtin_ctz(pins))]->next_after(cycle);
+            soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
         }
     }
     core_.schedule.set(Slot::Lines, soonest);
 }
 
 void Gpio::on_event(Slot, uint64_t cycle) {
-    for (Port& port : ports_) {
-        if (port.watched_in != 0) {
-            update(port, cycle);
-        }
+    for (unsigned ports = watched_ports_; ports != 0; ports &= ports - 1) {
+        update(ports_[static_cast<unsigned>(__builtin_ctz(ports))], cycle);
     }
     schedule_lines(cycle);
 }

@@ -46,57 +46,77 @@ class Schedule {
     explicit Schedule(Cpu& cpu) : cpu_(cpu) { due_.fill(kNever); }
 
     void set(Slot slot, uint64_t cycle) {
-        due_[static_cast<size_t>(slot)] = cycle;
+        const auto index = static_cast<unsigned>(slot);
+        if (due_[index] == cycle) {
+            return;
+        }
+        const uint32_t bit = 1u << index;
+        due_[index] = cycle;
+        set_ = cycle == kNever ? set_ & ~bit : set_ | bit;
         if (cycle < cpu_.limit) {
             cpu_.limit = cycle;
         }
-        next_known_ = false;
+        if (index == next_) {
+            forget_next();
+        } else if (cpu_.event_due != 0 && (stopped_ & bit) == 0 && comes_first(cycle, index)) {
+            next_ = index;
+            cpu_.event_due = cycle;
+        }
     }
     void cancel(Slot slot) { set(slot, kNever); }
     uint64_t due(Slot slot) const { return due_[static_cast<size_t>(slot)]; }
     // What is due in that slot waits until its clock runs again, and then as much longer as it stood.
     void stop(Slot slot) {
         stopped_ |= 1u << static_cast<unsigned>(slot);
-        next_known_ = false;
+        forget_next();
     }
     void go_on(Slot slot, uint64_t stood) {
         stopped_ &= ~(1u << static_cast<unsigned>(slot));
         const uint64_t was = due(slot);
         set(slot, was == kNever ? kNever : was + stood);
+        forget_next();
+        cpu_.end_soon();
     }
     void state(Archive& archive) {
         archive(due_, stopped_);
-        next_known_ = false;
+        set_ = 0;
+        for (size_t i = 0; i < kSlots; i++) {
+            set_ |= uint32_t{due_[i] != kNever} << i;
+        }
+        forget_next();
     }
 
     // The earliest slot and its time.
     Slot next(uint64_t* cycle) {
-        if (!next_known_) {
+        if (cpu_.event_due == 0) {
             find_next();
         }
-        *cycle = next_due_;
+        *cycle = cpu_.event_due;
         return static_cast<Slot>(next_);
     }
 
   private:
+    void forget_next() { cpu_.event_due = 0; }
+    bool comes_first(uint64_t cycle, unsigned index) const {
+        return cycle < cpu_.event_due || (cycle == cpu_.event_due && index < next_);
+    }
+
     void find_next() {
         next_ = 0;
-        next_due_ = kNever;
-        for (size_t i = 0; i < kSlots; i++) {
-            if (due_[i] < next_due_ && (stopped_ >> i & 1) == 0) {
-                next_ = i;
-                next_due_ = due_[i];
-            }
+        cpu_.event_due = kNever;
+        for (uint32_t slots = set_ & ~stopped_; slots != 0; slots &= slots - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctz(slots));
+            const bool is_sooner = due_[i] < cpu_.event_due; // no branch: nobody could foretell it
+            next_ = is_sooner ? i : next_;
+            cpu_.event_due = is_sooner ? due_[i] : cpu_.event_due;
         }
-        next_known_ = true;
     }
 
     Cpu& cpu_;
     std::array<uint64_t, kSlots> due_;
-    size_t next_ = 0;
-    uint64_t next_due_ = kNever;
+    unsigned next_ = 0;
     uint32_t stopped_ = 0; // a bit per slot
-    bool next_known_ = false;
+    uint32_t set_ = 0;     // slots that have a time
 };
 
 } // namespace tilenca::avr

@@ -109,28 +109,29 @@ void Timer::advance(uint64_t ticks, uint64_t cycle) {
 }
 
 uint8_t Timer::read(uint16_t address, uint64_t cycle) {
+    if (reads_as_stored(address)) {
+        return byte(address);
+    }
     sync(cycle);
     if (address == flag_register_) {
         return counter_.flags;
     }
-    const unsigned first_value = is_wide() ? kWideCount : kNarrowCount;
-    if (address == mask_register_ || address < base_ + first_value) {
-        return byte(address);
-    }
     return read_value(address - base_);
+}
+
+// Compare registers, too: their bytes are stored beside the counter's values.
+bool Timer::reads_as_stored(uint16_t address) const {
+    const unsigned offset = static_cast<unsigned>(address) - base_; // large for those below
+    const bool is_control = offset < (is_wide() ? kWideCount : kNarrowCount);
+    const bool is_compare = offset - first_compare() < (is_wide() ? kWideEnd : kNarrowEnd) - first_compare();
+    return address == mask_register_ || is_control || is_compare;
 }
 
 uint8_t Timer::read_value(unsigned offset) {
     if (!is_wide()) {
-        return static_cast<uint8_t>(offset == kNarrowCount ? counter_.count()
-                                                           : counter_.compare(offset - kNarrowCompare));
+        return static_cast<uint8_t>(counter_.count());
     }
-    const bool high = (offset & 1) != 0;
-    if (offset >= kWideCompare) { // compare registers are read byte by byte, without the shared temporary
-        const uint16_t value = counter_.compare((offset - kWideCompare) / 2);
-        return static_cast<uint8_t>(high ? value >> 8 : value);
-    }
-    if (high) {
+    if ((offset & 1) != 0) {
         return temp_;
     }
     const uint16_t value = offset == kWideCount ? counter_.count() : counter_.capture();
@@ -148,24 +149,53 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     } else if (address < base_ + first_value) {
         write_control(address, value, cycle);
     } else {
-        write_value(address - base_, value);
+        const unsigned offset = address - base_;
+        if (is_wide() && (offset & 1) != 0) { // waits for the low byte, and nothing has changed yet
+            temp_ = value;
+            return;
+        }
+        write_value(offset, value);
+        if (offset >= first_compare() && !compare_matters(offset - first_compare())) {
+            return;
+        }
     }
     update_requests();
     reschedule();
     show_outputs(cycle);
 }
 
+unsigned Timer::first_compare() const {
+    return is_wide() ? kWideCompare : kNarrowCompare;
+}
+
+// Whether anything but a flag that nobody waits for can come of a compare register's new value: some programs
+// keep their variables there.
+bool Timer::compare_matters(unsigned offset) const {
+    const unsigned channel = is_wide() ? offset / 2 : offset;
+    const bool is_waited_for = ((byte(mask_register_) | told_flags_) & kFlagCompareA << channel) != 0;
+    const WaveMode& mode = counter_.mode();
+    return is_waited_for || driving_[channel] || mode.top == Top::CompareA || mode.wave >= Wave::Fast;
+}
+
 void Timer::write_value(unsigned offset, uint8_t value) {
     if (is_wide()) {
-        if ((offset & 1) != 0) {
-            temp_ = value;
-        } else {
-            write_wide(offset, static_cast<uint16_t>(temp_ << 8 | value));
-        }
+        write_wide(offset, static_cast<uint16_t>(temp_ << 8 | value));
     } else if (offset == kNarrowCount) {
         counter_.set_count(value);
     } else {
-        counter_.set_compare(offset - kNarrowCompare, value);
+        set_compare(offset - kNarrowCompare, value);
+    }
+}
+
+void Timer::set_compare(unsigned channel, uint16_t value) {
+    counter_.set_compare(channel, value);
+    const auto place = static_cast<uint16_t>(base_ + first_compare() + (is_wide() ? 2 * channel : channel));
+    byte(place) = static_cast<uint8_t>(value);
+    if (is_wide()) {
+        byte(static_cast<uint16_t>(place + 1)) = static_cast<uint8_t>(value >> 8);
+    }
+    if (driving_[channel]) {
+        gpio_.note_shown(pins_[channel]);
     }
 }
 
@@ -177,7 +207,7 @@ void Timer::write_wide(unsigned offset, uint16_t value) {
             counter_.set_capture(value);
         }
     } else {
-        counter_.set_compare((offset - kWideCompare) / 2, value);
+        set_compare((offset - kWideCompare) / 2, value);
     }
 }
 
@@ -207,9 +237,14 @@ void Timer::apply_mode() {
 
 void Timer::apply_clock(uint64_t cycle) {
     const uint8_t select = byte(control_b()) & 7;
-    divisor_ = number_ == 2 ? kTimer2Divisors[select] : kDivisors[select];
+    set_divisor(number_ == 2 ? kTimer2Divisors[select] : kDivisors[select]);
     external_clock_ = number_ != 2 && select >= 6 ? select : 0;
     watch_inputs(cycle);
+}
+
+void Timer::set_divisor(uint32_t divisor) {
+    divisor_ = divisor;
+    shift_ = static_cast<uint8_t>(divisor == 0 ? 0 : __builtin_ctz(divisor));
 }
 
 void Timer::restart_prescaler(uint64_t cycle) {
@@ -222,8 +257,9 @@ void Timer::reset(uint64_t cycle) {
     counter_.reset();
     counter_.set_mode(is_wide() ? kWideModes[0] : kNarrowModes[0]);
     driving_.fill(false);
+    is_observed_ = false;
     temp_ = 0;
-    divisor_ = 0;
+    set_divisor(0);
     external_clock_ = 0;
     comparator_captures_ = false;
     capture_due_ = kNever;

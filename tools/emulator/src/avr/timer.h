@@ -10,19 +10,23 @@
 
 namespace tilenca::avr {
 
-class Timer : public Peripheral, public PinSource, private PinWatcher {
+class Timer final : public Peripheral, public PinSource, private PinWatcher {
   public:
     Timer(const Core& core, Gpio& gpio, unsigned number);
 
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
+    bool reads_as_stored(uint16_t address) const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
     bool pin_level(PinId pin, uint64_t cycle) override;
-    void observers_changed() override { reschedule(); }
+    void observers_changed() override {
+        look_for_observers();
+        reschedule();
+    }
     void state(Archive& archive) override;
 
     // Calls `call` whenever one of the flags in `mask` is set.
@@ -45,7 +49,7 @@ class Timer : public Peripheral, public PinSource, private PinWatcher {
     void capture(uint64_t cycle);
     void watch_inputs(uint64_t cycle);
     bool captures() const;
-    bool is_observed() const;
+    void look_for_observers();
     void show_outputs(uint64_t cycle);
     bool is_wide() const { return number_ == 1 || number_ >= 3; }
     unsigned channels() const { return is_wide() ? 3 : 2; }
@@ -53,16 +57,19 @@ class Timer : public Peripheral, public PinSource, private PinWatcher {
     uint16_t control_b() const { return static_cast<uint16_t>(base_ + 1); }
     void sync(uint64_t cycle);
     void advance(uint64_t ticks, uint64_t cycle);
-    uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) / divisor_; }
+    uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) >> shift_; }
     void write_control(uint16_t address, uint8_t value, uint64_t cycle);
     void write_value(unsigned offset, uint8_t value);
+    unsigned first_compare() const;
+    bool compare_matters(unsigned offset) const;
+    void set_compare(unsigned channel, uint16_t value);
     uint8_t read_value(unsigned offset);
     void write_wide(unsigned offset, uint16_t value);
     void apply_mode();
     void apply_outputs(uint64_t cycle);
     void apply_clock(uint64_t cycle);
-    uint8_t vector_of(uint8_t flag) const;
     void update_requests();
+    void set_divisor(uint32_t divisor);
     void reschedule();
 
     Gpio& gpio_;
@@ -73,9 +80,11 @@ class Timer : public Peripheral, public PinSource, private PinWatcher {
     Counter counter_;
     std::array<PinId, 3> pins_{};
     std::array<bool, 3> driving_{};
-    uint8_t temp_ = 0;     // the byte a 16-bit access leaves for its second half
-    uint32_t divisor_ = 0; // 0: the clock is stopped
-    uint64_t origin_ = 0;  // cycle the prescaler counts from
+    bool is_observed_ = false; // somebody must know when an output changes
+    uint8_t temp_ = 0;         // the byte a 16-bit access leaves for its second half
+    uint32_t divisor_ = 0;     // 0: the clock is stopped
+    uint8_t shift_ = 0;        // the divisor's logarithm
+    uint64_t origin_ = 0;      // cycle the prescaler counts from
     uint64_t synced_ = 0;
     uint8_t external_clock_ = 0; // 6: falling edges of the T pin, 7: rising ones, 0: none
     bool comparator_captures_ = false;

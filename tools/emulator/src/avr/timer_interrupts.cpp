@@ -5,20 +5,26 @@
 
 namespace tilenca::avr {
 
-uint8_t Timer::vector_of(uint8_t flag) const {
-    if (flag == kFlagOverflow) {
-        return static_cast<uint8_t>(first_vector_ + channels());
-    }
-    return static_cast<uint8_t>(flag == kFlagCapture ? first_vector_ - 1
-                                                     : first_vector_ + __builtin_ctz(flag) - 1);
-}
+namespace {
 
+constexpr uint8_t kWideFlags = 0x2F, kNarrowFlags = 0x07;
+constexpr unsigned kOverflowBit = 0, kFirstCompareBit = 1, kCaptureBit = 5;
+
+} // namespace
+
+// Vectors in order: capture (wide timers only), the compare units, overflow.
 void Timer::update_requests() {
-    const uint8_t asking = counter_.flags & byte(mask_register_);
-    for (const uint8_t flag : {0x01, 0x02, 0x04, 0x08, 0x20}) {
-        if (is_wide() || flag <= 0x04) {
-            core_.cpu.request(vector_of(flag), (asking & flag) != 0);
-        }
+    const unsigned asking = counter_.flags & byte(mask_register_) & (is_wide() ? kWideFlags : kNarrowFlags);
+    const unsigned units = channels(), all_units = (1u << units) - 1;
+    const uint64_t compares = asking >> kFirstCompareBit & all_units;
+    const uint64_t overflow = asking >> kOverflowBit & 1, capture = asking >> kCaptureBit & 1;
+    const uint64_t from_compare = compares | overflow << units;
+    const uint64_t all = (uint64_t{2} << units) - 1;
+    if (is_wide()) {
+        core_.cpu.request_all((all << 1 | 1) << (first_vector_ - 1), (from_compare << 1 | capture)
+                                                                         << (first_vector_ - 1));
+    } else {
+        core_.cpu.request_all(all << first_vector_, from_compare << first_vector_);
     }
 }
 
@@ -27,12 +33,12 @@ void Timer::reschedule() {
     uint64_t due = capture_due_;
     if (divisor_ != 0 && !clock_stands()) {
         uint64_t ticks = wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
-        if (is_observed()) {
+        if (is_observed_) {
             const uint64_t change = counter_.ticks_to_change();
             ticks = ticks == 0 ? change : std::min(ticks, change);
         }
         if (ticks != 0) {
-            due = std::min(due, (tick_index(synced_) + ticks) * divisor_ + origin_);
+            due = std::min(due, ((tick_index(synced_) + ticks) << shift_) + origin_);
         }
     }
     core_.schedule.set(slot_, due);
@@ -50,11 +56,9 @@ void Timer::on_event(Slot, uint64_t cycle) {
 }
 
 void Timer::interrupt_taken(uint8_t vector) {
-    for (const uint8_t flag : {0x01, 0x02, 0x04, 0x08, 0x20}) {
-        if ((is_wide() || flag <= 0x04) && vector_of(flag) == vector) {
-            counter_.flags &= static_cast<uint8_t>(~flag);
-        }
-    }
+    const unsigned place = vector + 1u - first_vector_; // 0: capture
+    const unsigned bit = place == 0 ? kCaptureBit : (place > channels() ? kOverflowBit : place);
+    counter_.flags &= static_cast<uint8_t>(~(1u << bit));
     update_requests();
     reschedule();
 }

@@ -39,6 +39,7 @@ void Timer::apply_outputs(uint64_t cycle) {
             } else {
                 gpio_.release(pins_[i], cycle, this);
             }
+            look_for_observers();
         }
     }
 }
@@ -63,17 +64,15 @@ double Timer::duty(PinId pin, uint64_t cycle) {
     return -1;
 }
 
-bool Timer::is_observed() const {
+void Timer::look_for_observers() {
+    is_observed_ = false;
     for (unsigned i = 0; i < channels(); i++) {
-        if (driving_[i] && gpio_.is_observed(pins_[i])) {
-            return true;
-        }
+        is_observed_ = is_observed_ || (driving_[i] && gpio_.is_observed(pins_[i]));
     }
-    return false;
 }
 
 void Timer::show_outputs(uint64_t cycle) {
-    if (is_observed()) {
+    if (is_observed_) {
         for (unsigned i = 0; i < channels(); i++) {
             if (driving_[i]) {
                 gpio_.source_changed(pins_[i], cycle);
@@ -162,6 +161,7 @@ void Timer::state(Archive& archive) {
     archive(counter_, driving_, temp_, divisor_, origin_, synced_, external_clock_, comparator_captures_,
             capture_due_, told_flags_);
     if (archive.loading()) {
+        set_divisor(divisor_);
         for (unsigned i = 0; i < channels(); i++) {
             if (driving_[i]) {
                 gpio_.drive_again(pins_[i], this);
@@ -173,6 +173,7 @@ void Timer::state(Archive& archive) {
         if (captures()) {
             gpio_.watch_again(kInputs[number_].capture, this);
         }
+        look_for_observers();
     }
 }
 

@@ -9,7 +9,7 @@
 
 namespace tilenca::avr {
 
-class Usart : public Peripheral {
+class Usart final : public Peripheral {
   public:
     Usart(const Core& core, Gpio& gpio, unsigned number);
 

@@ -12,6 +12,7 @@ class Watchdog : public Peripheral {
 
     std::vector<uint16_t> registers() const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
+    bool reads_as_stored(uint16_t) const override { return true; }
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
     void interrupt_taken(uint8_t vector) override;

@@ -7,7 +7,9 @@ namespace tilenca {
 namespace {
 
 constexpr avr::FrameFormat kFormat{8, 0, 1};
-constexpr double kAheadTicks = 64; // the tile's last instruction may already have passed the end of its turn
+constexpr double kMarginTicks = 64; // the tile's last instruction may already have passed the end of its turn
+// So far ahead the line is driven: longer than any turn, so that bytes follow each other without a pause.
+constexpr double kAheadTicks = 4096;
 
 } // namespace
 
@@ -15,17 +17,12 @@ void HostPort::edge(avr::PinId, uint64_t cycle, bool level) {
     receiver_.edge(clock_.to_ticks(cycle), level);
 }
 
-void HostPort::run_until(double end) {
-    send_until(end);
-    receiver_.receive_until(end);
-}
-
 void HostPort::send_until(double end) {
     const double bit_ticks = receiver_.bit_ticks();
-    while (!to_send_.empty() && line_free_ < end) {
+    while (!to_send_.empty() && line_free_ < end + kAheadTicks) {
         const uint16_t bits = kFormat.encode(to_send_.front());
         to_send_.pop_front();
-        line_free_ = std::max(line_free_, end + kAheadTicks);
+        line_free_ = std::max(line_free_, end + kMarginTicks);
         for (unsigned i = 0; i < kFormat.sent_bits(); i++) {
             drive_(line_free_ + i * bit_ticks, (bits >> i & 1) != 0);
         }

@@ -21,16 +21,16 @@ class HostPort : public avr::EdgeListener {
     void follow(double bit_ticks) { receiver_.follow(bit_ticks); }
     void send(uint8_t byte) { to_send_.push_back(byte); }
     bool all_sent() const { return to_send_.empty(); }
-    // Takes part in the time up to `end`, in ticks.
-    void run_until(double end);
+    // Takes what has come in by then, in ticks.
+    void receive_until(double end) { receiver_.receive_until(end); }
+    // Drives the line for some time after `end`, up to which the tile has run.
+    void send_until(double end);
     std::deque<Byte>& received() { return receiver_.received(); }
 
     void edge(avr::PinId pin, uint64_t cycle, bool level) override;
     void state(avr::Archive& archive);
 
   private:
-    void send_until(double end);
-
     const Clock& clock_;
     Drive drive_;
     SerialReceiver receiver_;

@@ -43,23 +43,33 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
       data_end_(data_end) {
     chip_.gpio().attach_line(kUsartPins[board::kHostUsart][0]);
     chip_.gpio().listen(kUsartPins[board::kHostUsart][1], &host_);
+    for (const board::Pin& segment : board::kSegments) {
+        chip_.gpio().show(on_chip(segment));
+    }
 }
 
-void Tile::run_until(double end) {
-    clock_.follow_drift(end);
-    if (const uint64_t cycle = clock_.to_cycle(end); cycle != 0) {
+void Tile::run_until(double end, double turn_end) {
+    clock_.follow_drift(turn_end);
+    const uint64_t cycle = clock_.to_cycle(end);
+    if (cycle != 0) {
         if (powered_) {
-            execute_until(end);
+            execute_until(end, cycle);
         } else if (cycle > chip_.cpu().cycle) {
             cycles_off_ += cycle - chip_.cpu().cycle;
             chip_.pass_while_off(cycle);
         }
+    }
+    const bool turn_ends = end == turn_end;
+    if (turn_ends && cycle != 0) {
         note_display();
         host_.follow(bit_ticks(board::kHostUsart));
     }
-    host_.run_until(end);
+    host_.receive_until(end);
+    if (turn_ends) {
+        host_.send_until(end);
+    }
     for (const auto& probe : probes_) {
-        if (probe->follows()) {
+        if (turn_ends && probe->follows()) {
             probe->receiver().follow(bit_ticks(probe->pin()));
         }
         probe->settle(end);
@@ -77,12 +87,12 @@ uint16_t Tile::stack_floor() const {
     return std::max(data_end_.fixed, static_cast<uint16_t>(heap[0] | heap[1] << 8));
 }
 
-void Tile::execute_until(double end) {
+void Tile::execute_until(double end, uint64_t cycle) {
     avr::Cpu& cpu = chip_.cpu();
     if (const uint16_t floor = stack_floor(); floor != cpu.stack_floor) {
         cpu.set_stack_floor(floor);
     }
-    chip_.run_until(clock_.to_cycle(end));
+    chip_.run_until(cycle);
     while (cpu.yields) { // its program has changed the speed of its clock
         cpu.yields = false;
         clock_.divide(cpu.clock_divisor, cpu.cycle);
@@ -136,14 +146,17 @@ double Tile::wakes_at() {
         return HUGE_VAL;
     }
     const uint64_t cycle = chip_.wakes_at();
+    if (cycle <= chip_.cpu().cycle) {
+        return 0;
+    }
     return cycle == avr::kNever ? HUGE_VAL : clock_.to_ticks(cycle);
 }
 
 void Tile::note_display() {
-    if (chip_.gpio().output_changes() == seen_changes_) {
+    if (chip_.gpio().shown_changes() == seen_changes_) {
         return;
     }
-    seen_changes_ = chip_.gpio().output_changes();
+    seen_changes_ = chip_.gpio().shown_changes();
     if (const uint8_t now = segments(); now != shown_) {
         shown_ = now;
         display_changes_.push_back({clock_.to_ticks(chip_.cpu().cycle), now});

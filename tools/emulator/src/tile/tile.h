@@ -30,8 +30,9 @@ class Tile {
     Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const Clock& clock,
          const DataEnd& data_end);
 
-    // Runs until a time in ticks; a fault stops the tile for good.
-    void run_until(double end);
+    // Runs until a time in ticks, of a turn that ends then or later; a fault stops the tile for good. The
+    // computer's end and the display are looked at when turns end.
+    void run_until(double end, double turn_end);
     // When the tile next does anything, in ticks.
     double wakes_at();
     // Off, it does nothing and drives nothing; on again, it starts as new, but for its flash and EEPROM.
@@ -61,7 +62,7 @@ class Tile {
 
   private:
     double bit_ticks(unsigned usart);
-    void execute_until(double end);
+    void execute_until(double end, uint64_t cycle);
     uint16_t stack_floor() const;
     bool lit(avr::PinId pin);
     void note_display();
