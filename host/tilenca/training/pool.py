@@ -235,8 +235,7 @@ class Pools:
 
     def pick_whole(self, count: int, drawn: bool = False) -> NDArray[np.int64]:
         """(count,) drawings of a class without damage, at any size or those of the files only."""
-        among = self._drawn if drawn else self._whole
-        return np.array([self._pick(among) for _ in range(count)], np.int64)
+        return np.array([self._pick(self._drawn if drawn else self._whole) for _ in range(count)], np.int64)
 
     def pick_other(self, drawing: int) -> int:
         """Another drawing of about its size; the same where there is none."""
