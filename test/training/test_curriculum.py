@@ -13,7 +13,7 @@ from tilenca.training.curriculum import DRAWN, STRETCHED, Curriculum, build, lab
 from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED
 from tilenca.training.recipes import RECIPES, Recipe
 
-FULL = replace(RECIPES["full"], stretch=1.5, library=600)
+FULL = replace(RECIPES["forms"], stretch=1.5, library=600)
 
 
 def curriculum(seed: int, recipe: Recipe = FULL) -> Curriculum:

@@ -153,12 +153,13 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
 def _aims(model: Model) -> Aims:
     """The aims in the model's metadata; its drawings alone where the metadata have none."""
     recipe = model.metadata.get("recipe", {})
-    stretch, damaged, unknown = (
-        recipe.get(name, default) for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0))
+    stretch, damaged, unknown, varied = (
+        recipe.get(name, default)
+        for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0), ("varied", 0.0))
     )
-    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown)):
+    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
         raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
-    return Aims(float(stretch), damaged > 0, unknown > 0)
+    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0)
 
 
 def _at_size(drawings: Drawings, wanted: Size) -> Drawings:

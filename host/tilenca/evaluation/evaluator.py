@@ -90,7 +90,7 @@ class Evaluator:
         """Drawings by another hand: variants of held-out forms."""
         if (case := self.suite.varied) is not None:
             runs = self._run(case, CLOCK, case.steps, each=max(2, self.runs // 50))
-            yield measure("varied", case.name, runs, case.steps, target_of(case.kind))
+            yield measure("varied", case.name, runs, case.steps, _target_if_aimed(case))
 
     def sizes(self) -> Iterator[Measurement]:
         """Other sizes."""

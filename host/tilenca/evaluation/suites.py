@@ -82,11 +82,14 @@ class Aims:
         stretch: largest factor of the drawn size.
         damaged: whether tiles may be missing.
         unknown: whether tiles show a dash on drawings of no class.
+        varied: whether classes are what their drawings may become. Then a drawing of no class must not be
+            like one of them; else it only must not be one of them.
     """
 
     stretch: float = 1.0
     damaged: bool = False
     unknown: bool = False
+    varied: bool = False
 
 
 def make_suite(
@@ -115,11 +118,11 @@ def make_suite(
         tuple(_damaged_cases(task, first, aimed, aims, split)),
         tuple(_unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
-        _varied_case(task, seed, split),
+        _varied_case(task, aims, seed, split),
     )
 
 
-def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
+def _varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
     """Variants of forms that training never draws."""
     if task.variants is None:
         return None
@@ -134,7 +137,10 @@ def _varied_case(task: Drawings, seed: int, split: str) -> Case | None:
                 found[variant.rows] = Shape(label, variant.rows, f"{label}, {'/'.join(variant.rows)}")
                 idle = 0
     name = f"held-out forms, {size_name(task.variants.least)} to {size_name(task.variants.most)}"
-    return Case("varied", name, task.of(list(found.values())), LARGE_STEPS, held_out=True) if found else None
+    if not found:
+        return None
+    drawings = task.of(list(found.values()))
+    return Case("varied", name, drawings, LARGE_STEPS, held_out=True, aimed=aims.varied)
 
 
 def _steps(size: Size) -> int:
@@ -207,7 +213,7 @@ def _unknown_cases(
     known = known_of(task.shapes)
     drawings = [shape.rows for shape in first]
     likeness = None
-    if task.variants is not None:
+    if task.variants is not None and aims.varied:
         likeness, _ = index_of([shape.rows for shape in task.shapes], task.variants, INDEXED, random)
     for name, wanted, draw, of_strokes in (
         ("random drawings", 500, edits.some_grown(drawings, random, least=4), False),

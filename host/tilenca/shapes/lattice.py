@@ -5,7 +5,7 @@ import numpy as np
 from tilenca.shapes.skeleton import Skeleton
 
 DIAGONALS = 0.25  # the share of skeletons with diagonal strokes
-FEWEST, MOST = 4, 10  # strokes
+FEWEST, MOST = 3, 10  # strokes
 
 
 def random_skeleton(random: np.random.Generator) -> Skeleton:

@@ -10,7 +10,7 @@ from tilenca.shapes.variant import TRAINED, Variant, Variants
 
 SIZE = 12, 10  # rows and columns at which drawings are compared
 ASPECT = 1.5  # weight of the logarithm of width by height
-CLOSE, FAR = 0.15, 0.97
+CLOSE, FAR = 0.15, 0.9
 MOST_WHOLE = 2000
 MOST_ASKED, FEWEST_ASKED = 500, 10  # drawings of an index that are compared with the others
 FEW_CLOSE, FEW_FAR = 1.0, 2.0  # where an index has too few

@@ -96,11 +96,13 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
         sizes: other sizes to stretch the drawings of the first file to.
         random: for the drawings that are drawn by chance.
     """
+    if recipe.varied == 0:
+        task = replace(task, variants=None)
     fitting = sizes.within(task.largest, recipe.stretch)
     drawn, stretched = list(task.shapes), list(_stretched(task, fitting.trained + fitting.more))
     shares = {
         STRETCHED: recipe.stretched if stretched else 0.0,
-        VARIED: recipe.varied if task.variants is not None else 0.0,
+        VARIED: recipe.varied if task.variants else 0.0,
         DAMAGED: recipe.damaged,
         OF_NO_CLASS: recipe.unknown if UNKNOWN in task.labels else 0.0,
         FREE: recipe.unlabelled,

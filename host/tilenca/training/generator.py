@@ -19,7 +19,7 @@ from tilenca.shapes.form import make_form
 from tilenca.shapes.lattice import random_skeleton
 from tilenca.shapes.likeness import index_of
 from tilenca.shapes.sizes import Size, Sizes
-from tilenca.shapes.stretch import Rows
+from tilenca.shapes.stretch import Rows, stretch
 from tilenca.shapes.variant import TRAINED, Variants, split_of
 from tilenca.shapes.vary import Vary
 
@@ -63,6 +63,7 @@ class Generator:
         self._vary = vary.sized(largest, Sizes())
         self._whole = list(whole)
         self._drawn = list(task.shapes)
+        self._strokes = edits.segments([shape.rows for shape in task.group(0)][:FEW])
         # Of thousands of drawings each has many relatives, and one tile more or less proves nothing.
         self._known = known_of(task.shapes) if len(task.shapes) <= FEW else None
         self._labels = [label for label in task.labels if label != UNKNOWN]
@@ -100,9 +101,9 @@ class Generator:
     def _base(self, random: np.random.Generator) -> Shape | None:
         """Any whole drawing: a variant, one of the files, or a stretched one."""
         chance = random.random()
-        if chance < 0.5 and self._variants is not None:
+        if chance < 0.4 and self._variants is not None:
             return self._varied(random)
-        among = self._drawn if chance < 0.75 else self._whole
+        among = self._drawn if chance < 0.7 else self._whole
         return among[int(random.integers(len(among)))]
 
     def _damaged(self, random: np.random.Generator) -> Shape | None:
@@ -166,7 +167,10 @@ class Generator:
         """Any connected drawing, and whether it consists of strokes as those of a class do."""
         height, width = self._size(random)
         chance = random.random()
-        if chance < 0.4:
+        if chance < 0.15:
+            rows = edits.some_segments(random, self._strokes) if self._strokes else None
+            return None if rows is None else stretch(rows, height, width), True
+        if chance < 0.45:
             least = min(4, height * width)
             tiles = int(random.integers(least, max(least, round(0.6 * height * width)) + 1))
             return edits.grown(random, tiles, height, width), False
