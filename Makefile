@@ -7,7 +7,7 @@ TILENCA := .venv/bin/tilenca
 TOOL    := PYTHONPATH=tools $(PYTHON) -m
 ENV     := megaatmega2560
 # Makes the emulator faster on an image, in the background; nothing waits for it.
-TRANSLATE := $(PYTHON) -m tilenca.emulator.translator --background
+TRANSLATE := $(PYTHON) -P -m tilenca.emulator.translator --background
 ELF     := .pio/build/$(ENV)/firmware.elf
 
 # C++ that is written by hand; what `tilenca export` generates has its own check.
@@ -40,13 +40,13 @@ setup-demo setup-train setup-test setup-check setup-docs:
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
 	@$(PIO) run -e $(ENV)
-	@$(TRANSLATE) $(ELF) &
+	@$(TRANSLATE) $(ELF) >/dev/null 2>&1 </dev/null &
 	@$(TILENCA) emulate --shape all
 	@echo "Next: . .venv/bin/activate && tilenca emulate --shape 4 --watch --seconds 10"
 
 test: setup-test ## run every test: the firmware's core on this machine, then host, emulator and wheel
 	@$(PIO) run -s -e $(ENV)
-	@$(TRANSLATE) $(ELF) &
+	@$(TRANSLATE) $(ELF) >/dev/null 2>&1 </dev/null &
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest -n auto --dist worksteal

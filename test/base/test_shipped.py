@@ -48,7 +48,7 @@ def test_what_the_user_has_comes_first(elsewhere: Path) -> None:
     (elsewhere / "shapes").mkdir()
     (elsewhere / "shapes" / "hex.toml").touch()
     assert shipped.model_folder("hex") == Path("hex")
-    assert shipped.shapes_file("hex") == Path("hex")
+    assert shipped.shapes_file("hex") == paths.SHAPES / "hex.toml", "a folder is no shape file"
     assert shipped.shapes_file("shapes/hex.toml") == Path("shapes/hex.toml")
     assert shipped.model_folder("models/hex") == paths.MODELS / "hex"
 

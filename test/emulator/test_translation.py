@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from support.avr import Compile
+from tilenca.base import paths
 from tilenca.emulator import Array, translation
 from tilenca.emulator.translation import SETTING, folder, path_of
 from tilenca.emulator.translator import make
@@ -65,3 +66,29 @@ def test_what_is_no_translation_is_left_alone(avr: Compile) -> None:
     array = Array(elf)
     array.run(0.001)
     assert not array.is_translated
+
+
+def test_code_that_others_could_have_put_there_is_not_run(avr: Compile, translations: Path) -> None:
+    elf = avr(ENDLESS)
+    path = make(elf)
+    for folder_mode, file_mode, used in (
+        (0o777, 0o755, False),
+        (0o700, 0o757, False),
+        (0o700, 0o755, True),
+    ):
+        translations.chmod(folder_mode)
+        path.chmod(file_mode)
+        array = Array(elf)
+        array.run(0.001)
+        assert array.is_translated == used
+
+
+def test_without_a_home_there_is_no_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    def homeless() -> Path:
+        raise RuntimeError("no home")
+
+    for name in (SETTING, "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(paths, "CHECKOUT", None)
+    monkeypatch.setattr(Path, "home", homeless)
+    assert folder() is None

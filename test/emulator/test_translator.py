@@ -178,12 +178,14 @@ def test_without_a_compiler_there_is_no_translation(
 def test_translations_of_other_builds_do_not_pile_up(avr: Compile, translations: Path) -> None:
     translations.mkdir()
     for number in range(MOST_KEPT + 5):
-        old = translations / f"{number}.so"
+        old = translations / f"{number:032x}.so"
         old.touch()
         os.utime(old, (number, number))
+    (translations / "libmine.so").touch()  # of another program
+    os.utime(translations / "libmine.so", (0, 0))
     made = make(avr("int main(void) { for (;;) { } }"))
     left = {path.name for path in translations.glob("*.so")}
-    assert left == {made.name, *(f"{number}.so" for number in range(6, MOST_KEPT + 5))}
+    assert left == {made.name, "libmine.so", *(f"{number:032x}.so" for number in range(6, MOST_KEPT + 5))}
 
 
 def test_the_module_prints_where_it_put_the_translation(avr: Compile) -> None:

@@ -8,7 +8,7 @@ import pytest
 from tilenca.base import paths
 from tilenca.shapes.batch import UNLABELLED, Drawings, load_training_task
 from tilenca.shapes.cells import cells_of, connected
-from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.variant import TRAINED, split_of
 from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED, Generator
 
@@ -82,3 +82,23 @@ def test_a_task_without_variants_has_the_other_kinds() -> None:
     for kind in (DAMAGED, OF_NO_CLASS, FREE):
         assert len({drawer.draw(kind, random).rows for _ in range(50)}) > 20
     assert drawer.draw(VARIED, random) in letters.shapes  # nothing else turns up
+
+
+def test_no_drawing_has_more_tiles_than_the_pools_have_room_for() -> None:
+    """Blocks of 16 x 16 tiles without [vary]: strangers and variants of twice that size would come up."""
+    rows = ("#" * 16,) * 16
+    other = (*rows[:15], "#" * 15 + ".")
+    shapes = (Shape("0", rows, "0"), Shape("1", other, "1"))
+    many = replace(task(), shapes=shapes, groups=(0, 0), labels=("0", "1", UNKNOWN), variants=None)
+    drawer, random = generator(drawings=many), np.random.default_rng(10)
+    for kind in KINDS:
+        assert all(len(drawer.draw(kind, random).cells) <= drawer.most_tiles for _ in range(30))
+
+
+def test_what_cannot_be_drawn_of_no_class_is_in_doubt_and_never_of_a_class() -> None:
+    pentominoes, _ = load_training_task([paths.DEFAULT_SHAPES.parent / "pentominoes.toml"], 1.0, 20)
+    drawings = replace(pentominoes, labels=(*pentominoes.labels, UNKNOWN))
+    drawer, random = generator(drawings=drawings), np.random.default_rng(11)
+    labels = [drawer.draw(OF_NO_CLASS, random).label for _ in range(100)]
+    assert labels.count(UNKNOWN) > 50
+    assert {*labels} <= {UNKNOWN, UNLABELLED}

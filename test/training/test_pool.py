@@ -1,6 +1,9 @@
 """The grids that training goes on from."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from support.training import SMOKE, trainer
 from tilenca.base import paths
@@ -65,3 +68,20 @@ def test_whether_a_grid_agrees_is_noted_only_after_it_had_time() -> None:
         learner.step()
     assert learner.pools.perturbed.wrong.any()
     assert (learner.pools.perturbed.age[learner.pools.perturbed.wrong] >= CONVERGED_AFTER).all()
+
+
+def test_failures_of_one_record_count_by_their_mean() -> None:
+    learner = trainer()
+    pools = learner.pools
+    pools.perturbed.age[:] = CONVERGED_AFTER
+    taken = pools.take(0.5)
+    same = np.zeros_like(pools.curriculum.failing)
+    pools.curriculum = replace(pools.curriculum, failing=same)
+    pools.perturbed.age[taken.perturbed] = 0
+    ticks = np.full(SMOKE.batch, CONVERGED_AFTER)
+    right = np.arange(SMOKE.batch) % 2 == 0
+    pools.failures[0] = 0.5
+    pools.give_back(taken, taken.states, ticks, right)
+    converged = pools.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
+    share = (~right[: len(taken.perturbed)])[converged].mean()
+    assert pools.failures[0] == pytest.approx(0.5 + 0.1 * (share - 0.5))

@@ -27,7 +27,7 @@ def shapes_file(text: str) -> Path:
         The file; where nothing fits, the path as it was given, which may not exist.
     """
     given = Path(text)
-    if not given.exists() and _inner_name(given, paths.SHAPES.name, SHAPES_SUFFIX) in shapes_names():
+    if not given.is_file() and _inner_name(given, paths.SHAPES.name, SHAPES_SUFFIX) in shapes_names():
         return paths.SHAPES / f"{given.stem}{SHAPES_SUFFIX}"
     return given
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.shipped import shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import number, seed, size, whole
 from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
@@ -29,11 +30,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
     parser.add_argument(
         "shapes",
-        type=Path,
+        type=shapes_file,
         nargs="?",
         default=paths.DEFAULT_SHAPES,
         metavar="FILE",
-        help="a shape file (shapes/digits.toml)",
+        help=f"a shape file, or one of: {' '.join(shapes_names())} (digits)",
     )
     parser.add_argument(
         "--vary",
@@ -55,7 +56,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "connected part becomes a [[shape]] table, to add to a shape file",
     )
     picture.add_argument("--size", type=size, metavar="RxC", help=f"rows x columns ({IMAGE_ROWS} rows)")
-    picture.add_argument("--label", default="?", metavar="L", help="what it means")
+    picture.add_argument(
+        "--label",
+        choices=list(GLYPHS),
+        default="-",
+        metavar="L",
+        help="what it means (-: none of the others)",
+    )
     picture.add_argument(
         "--ink",
         type=number(0, 1),

@@ -7,6 +7,7 @@ background when it has run for a while. Without a compiler the interpreter execu
 import hashlib
 import os
 import shutil
+import stat
 import subprocess
 import sys
 from contextlib import suppress
@@ -36,10 +37,24 @@ def folder() -> Path | None:
     """Where translations are kept; None: the user wants none."""
     setting = os.environ.get(SETTING)
     if setting:
-        return None if setting == "0" else Path(setting)
+        return None if setting == "0" else Path(setting).absolute()
     if paths.CHECKOUT is not None:
         return paths.BUILD / "translations"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tilenca" / "translations"
+    try:
+        cache_folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:  # nobody's home
+        return None
+    return cache_folder / "tilenca" / "translations"
+
+
+def _trusted(path: Path) -> bool:
+    """Whether only this user, or root, can have put the file there: it is code that this process will run."""
+    with suppress(OSError):
+        return all(
+            status.st_uid in (os.geteuid(), 0) and not status.st_mode & stat.S_IWOTH
+            for status in (path.stat(), path.parent.stat())
+        )
+    return False
 
 
 @cache
@@ -76,7 +91,7 @@ def begin(image: Path) -> None:
     _begun.add(path)
     with suppress(OSError):
         subprocess.Popen(
-            [sys.executable, "-m", MAKER, "--background", str(image.absolute())],
+            [sys.executable, "-P", "-m", MAKER, "--background", str(image.absolute())],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -102,7 +117,7 @@ class Translator:
 
     def use(self, handle: object) -> bool:
         """Whether the array executes translated blocks from now on."""
-        if self._path is None or not self._path.exists():
+        if self._path is None or not _trusted(self._path):
             return False
         path, self._path = self._path, None
         try:

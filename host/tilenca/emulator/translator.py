@@ -6,6 +6,7 @@ python -m tilenca.emulator.translator firmware.elf
 import argparse
 import fcntl
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,7 @@ from tilenca.emulator.translation import FLAGS, SETTING, compiler, path_of
 ROWS = COLUMNS = 3
 COUNTED_S = 0.6
 MOST_KEPT = 20
+NAME = re.compile(r"[0-9a-f]{32}")  # of a translation, see path_of
 
 
 def source_of(image: Path) -> str:
@@ -53,7 +55,7 @@ def make(image: Path) -> Path:
         raise BuildError(f"{image}: not translated; install g++, and unset {SETTING}")
     if path.exists():
         return path
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as made:
         source, library = Path(made) / "blocks.cpp", Path(made) / "blocks.so"
         source.write_text(source_of(image), encoding="ascii")
@@ -70,7 +72,8 @@ def make(image: Path) -> Path:
 def _forget_old(place: Path) -> None:
     """Removes all but the newest translations; those of other builds are never used again."""
     with suppress(OSError):
-        newest_first = sorted(place.glob("*.so"), key=lambda path: path.stat().st_mtime, reverse=True)
+        ours = [path for path in place.glob("*.so") if NAME.fullmatch(path.stem)]
+        newest_first = sorted(ours, key=lambda path: path.stat().st_mtime, reverse=True)
         for path in newest_first[MOST_KEPT:]:
             path.unlink(missing_ok=True)
 
@@ -80,7 +83,10 @@ def _make_alone(image: Path) -> None:
     path = path_of(image)
     if path is None or path.exists():
         return
-    path.parent.mkdir(parents=True, exist_ok=True)
+    failed = path.with_suffix(".failed")
+    if failed.exists():  # what did not compile once will not do so again
+        return
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with path.with_suffix(".lock").open("a") as lock:
         with suppress(OSError):
             os.nice(19)
@@ -88,10 +94,11 @@ def _make_alone(image: Path) -> None:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             return
-        if lock.tell() == 0:  # what failed once fails again
-            lock.write("begun\n")
-            lock.flush()
+        try:
             make(image)
+        except BuildError:
+            failed.touch()
+            raise
     path.with_suffix(".lock").unlink(missing_ok=True)
 
 
@@ -106,9 +113,9 @@ def main() -> int:
             _make_alone(args.image)
         else:
             print(make(args.image))
-    except TilencaError as error:
+    except (TilencaError, OSError) as error:
         print(f"translation: {error}", file=sys.stderr)
-        return error.exit_status
+        return error.exit_status if isinstance(error, TilencaError) else 1
     return 0
 
 

@@ -22,6 +22,7 @@ from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
 VERY_LARGE = 196  # and beyond this even more
 VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
+FEWEST = 10  # drawings of no class of which a target is asked
 INDEXED = 600  # variants that drawings of no class are compared with
 VARIANT_TRIES = 300  # in a row without a new one
 SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
@@ -228,7 +229,14 @@ def _unknown_cases(
         ]
         if shapes:
             label = f"no class: {name}, forms never trained on"
-            yield Case(name, label, task.of(shapes), SHORT_STEPS, held_out=True, aimed=aims.unknown)
+            yield Case(
+                name,
+                label,
+                task.of(shapes),
+                SHORT_STEPS,
+                held_out=True,
+                aimed=aims.unknown and len(shapes) >= FEWEST,
+            )
 
 
 def _distinct(shapes: Iterable[Shape]) -> list[Shape]:

@@ -77,14 +77,17 @@ class Generator:
         self.most_tiles = min(tallest, MOST_TILES) + 2 * MOST_EDITS
 
     def draw(self, kind: str, random: np.random.Generator) -> Shape:
-        """A drawing of a kind; one of the files' where no other turns up."""
+        """A drawing of a kind; where none turns up, one of the files', or for no class one in doubt."""
         drawers: dict[str, Callable[[np.random.Generator], Shape | None]] = {
             VARIED: self._varied, DAMAGED: self._damaged, OF_NO_CLASS: self._of_no_class, FREE: self._free
         }  # fmt: skip
-        for _ in range(TRIES):
-            shape = drawers[kind](random)
-            if shape is not None:
-                return shape
+        for kind_now in (kind, FREE) if kind == OF_NO_CLASS else (kind,):
+            for _ in range(TRIES):
+                shape = drawers[kind_now](random)
+                if shape is None or len(shape.cells) > self.most_tiles:
+                    continue
+                if kind != OF_NO_CLASS or shape.label in (UNKNOWN, UNLABELLED):
+                    return shape
         return self._drawn[int(random.integers(len(self._drawn)))]
 
     def _varied(self, random: np.random.Generator) -> Shape | None:
@@ -139,7 +142,10 @@ class Generator:
         rows, like_strokes = self._stranger(random)
         if rows is None or split_of(rows) != TRAINED or rows in self._taken:
             return None
-        if self._likeness.could_be_one(rows, like_strokes):
+        if self._variants is None and self._known is not None:
+            if self._known.is_known(rows):
+                return None
+        elif self._likeness.could_be_one(rows, like_strokes):
             return None
         return Shape(UNKNOWN, rows, f"none of {len(rows)}x{len(rows[0])}")
 
@@ -154,14 +160,13 @@ class Generator:
         shape = self._base(random)
         if shape is None:
             return None
-        edits = 1 if random.random() < 0.6 else int(random.integers(2, MOST_EDITS + 1))
-        edited = _edited(shape, edits, random)
-        if edited is None or split_of(edited) != TRAINED:
+        times = 1 if random.random() < 0.6 else int(random.integers(2, MOST_EDITS + 1))
+        rows = _edited(shape, times, random)
+        if rows is None or split_of(rows) != TRAINED:
             return None
-        clear = edits == 1 and len(shape.cells) >= CLEAR and edited not in self._taken
-        return Shape(
-            self._taken.get(edited, shape.label if clear else UNLABELLED), edited, f"{shape.name} edited"
-        )
+        clear = times == 1 and len(shape.cells) >= CLEAR
+        label = self._taken.get(rows, shape.label if clear else UNLABELLED)
+        return Shape(label, rows, f"{shape.name} edited")
 
     def _stranger(self, random: np.random.Generator) -> tuple[Rows | None, bool]:
         """Any connected drawing, and whether it consists of strokes as those of a class do."""
@@ -196,10 +201,10 @@ class Generator:
         return max(1, height), int(random.integers(slim, max(slim, min(wide, height)) + 1))
 
 
-def _edited(shape: Shape, edits: int, random: np.random.Generator) -> Rows | None:
+def _edited(shape: Shape, times: int, random: np.random.Generator) -> Rows | None:
     """The drawing with some tiles too many or too few at its border; None where that tears it apart."""
     tiles = set(shape.cells)
-    for _ in range(edits):
+    for _ in range(times):
         cells = sorted(tiles)
         row, col = cells[int(random.integers(len(cells)))]
         if random.random() < 0.5 and len(tiles) > 2:

@@ -86,7 +86,6 @@ class Pools:
         self._seed = np.eye(1, channels, dtype=np.float32)
         # The recent share of failures of each record, 0..1; a drawing counts as failing until it is measured.
         self.failures = np.ones(curriculum.records)
-        self._everything = np.arange(len(curriculum.kinds))
         self._whole = np.flatnonzero(curriculum.whole)
         self._drawn = np.flatnonzero(curriculum.kinds == DRAWN)
         self._weigh(0.0)
@@ -140,8 +139,7 @@ class Pools:
         recipe = self.recipe
         if recipe.perturbed_pool == 0:
             self.perturbed = self._empty(count)
-            self._refill(self.perturbed)
-            return np.arange(count), 0, 0
+            return self._refill(self.perturbed), 0, 0
         taken = self.random.choice(recipe.perturbed_pool, count, replace=False)
         # Grids that do not agree go on until they do; others are disturbed.
         stays = self.perturbed.wrong[taken] & (self.perturbed.age[taken] < PATIENCE)
@@ -188,7 +186,9 @@ class Pools:
         converged = self.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
         self.perturbed.wrong[taken.perturbed] = converged & ~right[:count]
         seen = self.curriculum.failing[self.perturbed.drawing[taken.perturbed][converged]]
-        self.failures[seen] += FAILURE_EMA * (~right[:count][converged] - self.failures[seen])
+        records, record, times = np.unique(seen, return_inverse=True, return_counts=True)
+        failed = np.bincount(record, ~right[:count][converged], len(records)) / times
+        self.failures[records] += FAILURE_EMA * (failed - self.failures[records])
 
     def state(self) -> dict[str, Any]:
         """Everything that changes, as plain values and tensors for a checkpoint."""
@@ -204,21 +204,22 @@ class Pools:
 
     def restore(self, state: dict[str, Any]) -> None:
         """Continues with what `state` returned."""
-        for name, pool in (("perturbed", self.perturbed), ("undisturbed", self.undisturbed)):
-            for field in fields(pool):
-                setattr(pool, field.name, state[name][field.name].cpu().numpy().copy())
+        for name in ("perturbed", "undisturbed"):
+            for field in fields(Pool):
+                setattr(getattr(self, name), field.name, state[name][field.name].cpu().numpy().copy())
         self.failures = state["failures"].cpu().numpy().copy()
-        places = np.flatnonzero(self.curriculum.renewable)
-        self.curriculum = self.curriculum.with_drawings(places, [Shape(*shape) for shape in state["renewed"]])
+        places, shapes = np.flatnonzero(self.curriculum.renewable), [Shape(*s) for s in state["renewed"]]
+        self.curriculum = self.curriculum.with_drawings(places, shapes)
 
     def _empty(self, count: int) -> Pool:
         states = np.zeros((count, self.curriculum.most_tiles, self.channels), np.float32)
         drawing, age, lifetime = np.zeros((3, count), np.int64)
         return Pool(drawing, states, age, lifetime, np.zeros(count, np.bool_))
 
-    def _refill(self, pool: Pool) -> None:
+    def _refill(self, pool: Pool) -> Numbers:
         for number in range(len(pool.age)):
             self.reset(pool, number)
+        return np.arange(len(pool.age))
 
     def _weigh(self, progress: float) -> None:
         """Sets each drawing's chance: a mixture of its weight and its weight times its share of failures."""
@@ -273,11 +274,10 @@ class Pools:
 
     def reset(self, pool: Pool, number: int) -> None:
         """Starts a grid anew with any drawing, every tile in its seed state."""
-        among = self._everything
+        among = np.arange(len(self.curriculum.kinds))
         if pool is self.undisturbed and self.random.random() < UNDISTURBED_DRAWN:
             among = self._drawn
-        drawing = self._pick(among)
-        pool.drawing[number] = drawing
+        pool.drawing[number] = drawing = self._pick(among)
         pool.states[number] = 0.0
         pool.states[number, : self.drawings.sizes[drawing], 0] = 1.0
         pool.age[number] = 0
