@@ -5,6 +5,13 @@ from typing import Any
 from tilenca.model import cost
 from tilenca.model.file import Model
 
+# Recipes have a library since forms are held out.
+SPLIT_BY_FORM = "New pairs and drawings of no class had no form in common with those that did."
+NOT_SPLIT = (
+    "This model was trained before drawings were held out by form: of the new pairs and the drawings of no "
+    "class some may have been trained, at this size or another."
+)
+
 
 def render_card(model: Model, metrics: dict[str, Any]) -> str:
     """README.md of a model directory.
@@ -54,8 +61,9 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "seed when it is switched on, and updates for the first time one period later. All are switched on "
         "within 10 periods; steps count from the last one, or from the last change. Intervals are Wilson's, "
         "for these drawings. A target of 1.000 holds where the share rounds to 1.000. Held-out sizes helped "
-        "to choose when to stop, with other runs than these. New pairs and drawings of no class had no form "
-        "in common with those that did. To measure it again:",
+        "to choose when to stop, with other runs than these. "
+        + (SPLIT_BY_FORM if "library" in metadata["recipe"] else NOT_SPLIT)
+        + " To measure it again:",
         "",
         f"    tilenca evaluate --suite --model DIR --shapes {' '.join(metadata['shapes'])} "
         f"--runs {metrics['runs_per_drawing']} --seed {metrics['seed']}",
