@@ -111,6 +111,10 @@ def stand_in(name: str, version: int, size: int, without: str = "") -> str:
     )
 
 
+def version_of(name: str) -> int:
+    return int(getattr(load(name).lib, f"tilenca_{name}_abi_version")())
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_library_of_another_version_is_stale(name: str, tmp_path: Path) -> None:
     path = compiled(tmp_path, stand_in(name, 999, 0))
@@ -121,7 +125,7 @@ def test_a_library_of_another_version_is_stale(name: str, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_library_with_other_structures_is_stale(name: str, tmp_path: Path) -> None:
-    path = compiled(tmp_path, stand_in(name, 1, 1))
+    path = compiled(tmp_path, stand_in(name, version_of(name), 1))
     assert re.search(rf"^{path}: stale: tilenca_\w+ has 1 bytes, .*; run: make setup", refused(name, path))
 
 
@@ -130,7 +134,7 @@ def test_a_library_without_one_of_the_functions_is_stale(name: str, tmp_path: Pa
     function = {"emulator": "tilenca_probe_bytes", "simulator": "tilenca_schedule_next"}.get(
         name, "tilenca_rollout_kind"
     )
-    path = compiled(tmp_path, stand_in(name, 1, 0, function))
+    path = compiled(tmp_path, stand_in(name, version_of(name), 0, function))
     assert re.search(rf"^{path}: stale: .*{function}.*; run: make setup", refused(name, path))
     path = compiled(tmp_path, "int nothing;")
     assert re.search(rf"^{path}: not usable .*; remove it and run: make setup", refused(name, path))

@@ -227,7 +227,7 @@ def test_on_a_terminal_it_is_a_live_view_without_colour_if_so_asked(
         return
     assert "RECEIVED" in picture
     for tile in tiles:
-        row = next(line for line in reversed(picture.splitlines()) if line.startswith(tile.port))
+        row = next(line for line in reversed(picture.splitlines()) if line.split()[:1] == [tile.port])
         assert row.split()[:7] == [tile.port, str(tile.tile), "7", "30", "1", "0", "s"]
 
 
