@@ -66,6 +66,7 @@ feet = 0.7"""
         ('[vary]\nslant = "much"', "slant 'much'; give a number"),
         ("[vary]\nthickness = 0", "thickness 0; write the least and the most"),
         ("[vary]\nthickness = [3, 1]", r"thickness \[3, 1\]; write"),
+        ('[vary]\nthickness = 9\nto = "4x4"', "thickness 9 leaves no room in 4x4"),
         ("[vary]\nthickness = [1, 2, 3]", "write the least and the most"),
         ('[vary]\nfrom = "5"', r"\[vary\] from: '5' is not a size"),
         ('[vary]\nfrom = "9x9"\nto = "8x9"', "from 9x9 is larger than to 8x9"),

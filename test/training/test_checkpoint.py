@@ -3,12 +3,16 @@
 import resource
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import torch
 
-from support.training import trainer
+from support.training import SMOKE, job_of, trainer
+from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
+from tilenca.training.runner import make_trainer
 
 
 def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> None:
@@ -46,3 +50,25 @@ def test_a_disk_that_fills_up_leaves_the_checkpoint_before_and_no_half_one(tmp_p
         learner.save(path)
     assert path.read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["checkpoint-1.pt"]
+
+
+def test_a_training_with_drawings_by_chance_resumes_to_the_same_bytes(tmp_path: Path) -> None:
+    """The library is renewed at iterations 15 and 30: before and after the checkpoint."""
+    recipe = replace(SMOKE, varied=0.3, unlabelled=0.1)
+    job = job_of([paths.DEFAULT_SHAPES], tmp_path, recipe=recipe)
+    whole, half = make_trainer(job), make_trainer(job)
+    for _ in range(20):
+        half.step()
+    half.save(job.checkpoint)
+    resumed = make_trainer(replace(job, resume=True))
+    for _ in range(35):
+        whole.step()
+    for _ in range(15):
+        resumed.step()
+    assert [shape.rows for shape in whole.pools.drawings.shapes] == [
+        shape.rows for shape in resumed.pools.drawings.shapes
+    ]
+    first = make_trainer(job).pools.drawings.shapes
+    assert [shape.rows for shape in first] != [shape.rows for shape in whole.pools.drawings.shapes]
+    for name, value in whole.ema.items():
+        assert torch.equal(value, resumed.ema[name]), name

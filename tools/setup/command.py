@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,7 +54,8 @@ def stop() -> None:
     with _programs.lock:
         _programs.stopped = True
         for program in _programs.running:
-            os.killpg(program.pid, signal.SIGTERM)
+            with suppress(ProcessLookupError):  # it has just ended
+                os.killpg(program.pid, signal.SIGTERM)
 
 
 def run(command: Sequence[str | Path], failure: str, env: Mapping[str, str] | None = None) -> None:

@@ -29,6 +29,7 @@ from tilenca.shapes.sizes import Size, Sizes, parse_size, size_name
 from tilenca.shapes.skeleton import Skeleton, of_strokes
 
 THICKEST = 9
+LEAST_STROKES = 2  # beside each other, for which the largest drawing has room
 SMALLER, LARGER = 0.8, 1.8  # times the drawn size
 
 
@@ -112,6 +113,11 @@ def read_vary(path: Path, table: object) -> Vary | None:
         else:
             changes[key] = (_thickness if key == "thickness" else _number)(path, key, value)
     vary = replace(Vary(), **changes)
+    if vary.most and min(vary.most) < LEAST_STROKES * vary.thickness[0]:
+        raise UsageError(
+            f"{path}: [vary] thickness {vary.thickness[0]} leaves no room in {size_name(vary.most)}; "
+            "give thinner strokes, or a larger to"
+        )
     if vary.least and vary.most and not (vary.least[0] <= vary.most[0] and vary.least[1] <= vary.most[1]):
         raise UsageError(
             f"{path}: [vary] from {size_name(vary.least)} is larger than to {size_name(vary.most)}"

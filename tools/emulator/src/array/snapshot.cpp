@@ -94,10 +94,12 @@ void Array::load(const uint8_t* bytes, size_t count) {
         connect(from, to);
     }
     rebuild_order();
-    archive(now_, asked_for_, delay_);
-    if (!(delay_ >= kLeastDelayTicks && delay_ <= kMostDelayTicks)) {
+    auto delay = delay_;
+    archive(now_, asked_for_, delay);
+    if (!(delay >= kLeastDelayTicks && delay <= kMostDelayTicks)) {
         throw avr::ArchiveError("its cables take longer than any can");
     }
+    delay_ = delay;
     turn_ = turn_of(delay_);
     for (const auto& one : tiles_) {
         archive(*one);

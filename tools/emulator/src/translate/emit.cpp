@@ -11,7 +11,6 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 1;                    // one more with every change of what is emitted
 constexpr unsigned kStackPointer = 32, kRegisters = 33; // the stack pointer is one more register
 
 // A block's function. Registers are variables: read when it is entered, written back wherever it is left.
