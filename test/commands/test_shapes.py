@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from tilenca import cli
 from tilenca.base import paths
@@ -71,6 +71,26 @@ def test_a_picture_becomes_a_table_that_a_shape_file_takes(
     assert (shape.label, shape.rows) == ("7", ("######",) * 2 + ("....##",) * 4)
     report = json.loads(run(capsys, "--image", str(tmp_path / "seven.png"), "--json"))
     assert (report["rows"], report["cols"]) == (10, 10)
+
+
+def test_a_thin_slanted_stroke_stays_whole(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    picture = Image.new("L", (200, 240), 255)
+    ImageDraw.Draw(picture).line([(30, 30), (170, 30), (90, 210)], fill=0, width=14)
+    picture.save(tmp_path / "seven.png")
+    report = json.loads(run(capsys, "--image", str(tmp_path / "seven.png"), "--size", "10x8", "--json"))
+    assert (report["rows"], report["cols"]) == (10, 8)
+    assert cli.main(["shapes", "--image", str(tmp_path / "seven.png"), "--size", "10x8", "--ink", "0.5"]) == 0
+    assert "tiles with ink do not touch the others" in capsys.readouterr().err
+
+
+def test_variants_that_cannot_be_drawn_are_an_error(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    shape = '[[shape]]\nlabel = "t"\ngrid = """\n.#.\n###\n.#.\n.##\n"""\n'
+    file.write_text(f'[vary]\nfrom = "2x2"\nto = "2x2"\n{shape}')
+    assert cli.main(["shapes", str(file), "--vary"]) == 2
+    assert "allow larger sizes" in capsys.readouterr().err
 
 
 def test_a_picture_without_enough_ink_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -60,3 +60,21 @@ def test_the_words_of_the_progress_line_are_explained(
     last = capsys.readouterr().err.splitlines()[-1]
     assert last.startswith("progress: the loss, the share of drawings with every tile right, ")
     assert ("how many targets of the model card are met" in last) == measures
+
+
+def test_a_table_that_the_recipe_does_not_heed_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for recipe, told in (("quick", True), ("forms", False)):
+        plan = make_plan(arguments(tmp_path, "--recipe", recipe))
+        announce(plan, cost.check(plan.dimensions, len(plan.task.labels)))
+        assert ("only --recipe forms heeds [vary]" in capsys.readouterr().err) == told
+
+
+def test_classes_without_variants_are_refused_before_training(tmp_path: Path) -> None:
+    shape = '[[shape]]\nlabel = "{}"\ngrid = """\n{}\n"""\n'
+    text = '[vary]\nfrom = "2x2"\nto = "2x2"\n' + shape.format("8", "###\n#.#\n###\n#.#\n###")
+    (tmp_path / "mine.toml").write_text(text + shape.format("L", "#..\n###"))
+    args = arguments(tmp_path / "out", "--shapes", str(tmp_path / "mine.toml"), "--recipe", "forms")
+    with pytest.raises(UsageError, match="no variant of '8' can be drawn; allow larger"):
+        make_plan(args)

@@ -17,13 +17,16 @@ from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.file import Shape, load_task
 from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
-from tilenca.shapes.image import cropped, drawing_of, read_image
+from tilenca.shapes.image import cropped, drawing_of, pooled, read_image
 from tilenca.shapes.sizes import LARGEST, Size
+from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import TRAINED
 from tilenca.views.drawings import half_blocks, side_by_side
 
 TRIES = 50  # for each variant
 IMAGE_ROWS = 10
+INK = (0.5, 0.4, 0.3, 0.2, 0.12)  # least part of a tile that is ink, as far as needed
+MOST_DROPPED = 0.05  # of the drawing's tiles may be left out, before less ink will do
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -66,9 +69,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     picture.add_argument(
         "--ink",
         type=number(0, 1),
-        default=0.5,
         metavar="P",
-        help="least part of a tile that is ink, 0 to 1 (0.5)",
+        help="least part of a tile that is ink, 0 to 1 (0.5, or less where the drawing would fall apart)",
     )
     parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
 
@@ -95,7 +97,8 @@ def run(args: argparse.Namespace) -> int:
     for label, some in variants.items():
         print(f"{label} may become")
         print("\n".join(side_by_side([("", rows) for rows in some], width)))
-    print(f"{len(task.shapes)} drawings of {len(task.labels)} classes: {' '.join(task.labels)}")
+    drawn = f"{len(task.shapes)} drawing{'s' * (len(task.shapes) > 1)}"
+    print(f"{drawn} of {len(task.labels)} class{'es' * (len(task.labels) > 1)}: {' '.join(task.labels)}")
     for problem in problems:
         print(problem)
     return 0
@@ -104,7 +107,15 @@ def run(args: argparse.Namespace) -> int:
 def _image(args: argparse.Namespace) -> int:
     """Prints the drawing of a picture as a table of a shape file, and shows it."""
     ink = cropped(read_image(args.image))
-    rows = drawing_of(ink, args.size or _kept_proportions(ink.shape), args.ink)
+    size = args.size or _kept_proportions(ink.shape)
+    rows: Rows = ()
+    dropped = 0
+    # Thin strokes leave little ink in a tile: take less of it until the drawing is whole.
+    for least in (args.ink,) if args.ink is not None else INK:
+        rows = drawing_of(ink, size, least)
+        dropped = int((pooled(ink, size) >= least).sum()) - sum(row.count("#") for row in rows)
+        if rows and dropped <= MOST_DROPPED * sum(row.count("#") for row in rows):
+            break
     if not rows:
         raise UsageError(f"{args.image}: no tile has that much ink; give a smaller --ink, or another --size")
     grid = "\n".join(rows)
@@ -112,6 +123,8 @@ def _image(args: argparse.Namespace) -> int:
         print(json.dumps({"label": args.label, "rows": len(rows), "cols": len(rows[0]), "grid": grid}))
         return 0
     warn("\n".join(half_blocks(rows)))
+    if dropped:
+        warn(f"note: {dropped} tiles with ink do not touch the others and are left out; try a smaller --ink")
     warn(f"{grid.count('#')} tiles in {len(rows)} rows and {len(rows[0])} columns; add this to a shape file:")
     print(f'[[shape]]\nlabel = "{args.label}"\ngrid = """\n{grid}\n"""')
     return 0
@@ -146,6 +159,8 @@ def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[s
                 some.append(variant.rows)
             if len(some) == count:
                 break
+        if not some:
+            raise UsageError(f"{path}: no variant of '{label}' can be drawn; allow larger sizes in [vary]")
     return found
 
 

@@ -266,4 +266,5 @@ def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seco
         )
     if missed and args.recipe == "smoke":
         warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
-    warn(f"next: tilenca evaluate --model {where}, or tilenca export --model {where} and pio run")
+    shapes = f" --shapes {shlex.join(map(str, args.shapes))}"
+    warn(f"next: tilenca evaluate --model {where}{shapes}, or tilenca export --model {where} and pio run")

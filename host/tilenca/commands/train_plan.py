@@ -2,6 +2,9 @@
 
 import argparse
 from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
 
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
@@ -9,11 +12,15 @@ from tilenca.model import cost
 from tilenca.model.file import Dimensions, checkpoint_path, checkpoints
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.derive import known_of
-from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.file import UNKNOWN, load_task
 from tilenca.shapes.sizes import Sizes
+from tilenca.shapes.variant import TRAINED
+from tilenca.shapes.vary import Vary
 from tilenca.training.curriculum import labels_of
 from tilenca.training.generator import FEW
 from tilenca.training.recipes import Recipe, find_recipe
+
+TRIES = 300  # to draw a variant of a class
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,7 @@ class TrainingPlan:
         dimensions: of the network.
         seeds: to train.
         validation_runs: of each drawing in the final measurement.
+        varies: whether the first file has a table `[vary]` or `[forms]`.
     """
 
     task: Drawings
@@ -35,6 +43,7 @@ class TrainingPlan:
     dimensions: Dimensions
     seeds: tuple[int, ...]
     validation_runs: int
+    varies: bool = False
 
 
 def make_plan(args: argparse.Namespace) -> TrainingPlan:
@@ -52,7 +61,26 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
     labels = labels_of(task, recipe, dimensions.max_classes)
     seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
     runs = args.validation_runs or recipe.validation_runs
-    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs)
+    if recipe.varied:
+        _check_variants(args.shapes[0], task)
+    first = load_task(args.shapes[0])
+    varies = bool(first.forms) or first.vary not in (None, Vary())
+    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs, varies)
+
+
+def _check_variants(path: Path, task: Drawings) -> None:
+    """Refuses classes of which no variant can be drawn.
+
+    Raises:
+        UsageError: the file allows too little; the message names it, the class and the remedy.
+    """
+    variants, random = task.variants, np.random.default_rng(0)
+    if variants is None:
+        return
+    for label in variants.labels:
+        several = any(len(shape.cells) > 1 for shape in task.shapes if shape.label == label)
+        if several and not any(variants.draw(label, TRAINED, random) for _ in range(TRIES)):
+            raise UsageError(f"{path}: no variant of '{label}' can be drawn; allow larger sizes in [vary]")
 
 
 def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
@@ -68,6 +96,8 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
         doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
         if doubts:
             warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    if plan.recipe.varied == 0 and plan.varies:
+        warn("note: this recipe trains on the drawings alone; only --recipe forms heeds [vary] and [forms]")
     warn(
         f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
         f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "

@@ -211,7 +211,7 @@ def _join(
             if labels is not None and shape.label not in labels:
                 raise UsageError(
                     f"{path}: the model does not know '{shape.label}'; it knows: {' '.join(labels)}; "
-                    "train one on this file with `tilenca train`"
+                    "give the file it was trained on with --shapes, or train one on this file"
                 )
             found.setdefault(shape.label)
         if all(of != group for _, of in shapes.values()):
