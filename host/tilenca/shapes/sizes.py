@@ -81,10 +81,10 @@ def read_sizes(path: Path, table: object) -> Sizes:
         raise UsageError(f"{path}: [sizes] has no '{unknown[0]}'; it has {', '.join(KEYS)}")
     if ("from" in table) != ("to" in table):
         raise UsageError(f"{path}: [sizes] has one of from and to; give both or neither")
-    held_out = tuple(_size(path, "held_out", text) for text in _texts(path, table, "held_out"))
+    held_out = tuple(read_size(path, "sizes", "held_out", text) for text in _texts(path, table, "held_out"))
     trained: list[Size] = []
     if "from" in table:
-        least, most = (_size(path, key, table[key]) for key in ("from", "to"))
+        least, most = (read_size(path, "sizes", key, table[key]) for key in ("from", "to"))
         if not (least[0] <= most[0] and least[1] <= most[1]):
             raise UsageError(f"{path}: [sizes] from {size_name(least)} is larger than to {size_name(most)}")
         trained = [
@@ -94,7 +94,7 @@ def read_sizes(path: Path, table: object) -> Sizes:
             if (rows, columns) not in held_out
         ]
     drawn = tuple(path.parent / name for name in _texts(path, table, "drawn"))
-    more = tuple(_size(path, "more", text) for text in _texts(path, table, "more"))
+    more = tuple(read_size(path, "sizes", "more", text) for text in _texts(path, table, "more"))
     for size in more:
         if size in held_out:
             raise UsageError(
@@ -110,8 +110,13 @@ def _texts(path: Path, table: dict[str, object], key: str) -> Sequence[str]:
     return texts
 
 
-def _size(path: Path, key: str, text: object) -> Size:
+def read_size(path: Path, table: str, key: str, text: object) -> Size:
+    """The size that a key of a shape file's table gives.
+
+    Raises:
+        UsageError: it is not a size; the message names the file, the table and the key.
+    """
     try:
         return parse_size(text if isinstance(text, str) else str(text))
     except ValueError as error:
-        raise UsageError(f"{path}: [sizes] {key}: {error}") from error
+        raise UsageError(f"{path}: [{table}] {key}: {error}") from error

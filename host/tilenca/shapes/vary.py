@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import UsageError
-from tilenca.shapes.sizes import Size, Sizes, parse_size, size_name
+from tilenca.shapes.sizes import Size, Sizes, read_size, size_name
 from tilenca.shapes.skeleton import Skeleton, of_strokes
 
 THICKEST = 9
@@ -109,7 +109,7 @@ def read_vary(path: Path, table: object) -> Vary | None:
         if key not in KEYS:
             raise UsageError(f"{path}: [vary] has no '{key}'; it has {', '.join(KEYS)}")
         if key in ("from", "to"):
-            changes["least" if key == "from" else "most"] = _size(path, key, value)
+            changes["least" if key == "from" else "most"] = read_size(path, "vary", key, value)
         else:
             changes[key] = (_thickness if key == "thickness" else _number)(path, key, value)
     vary = replace(Vary(), **changes)
@@ -123,13 +123,6 @@ def read_vary(path: Path, table: object) -> Vary | None:
             f"{path}: [vary] from {size_name(vary.least)} is larger than to {size_name(vary.most)}"
         )
     return vary
-
-
-def _size(path: Path, key: str, value: object) -> Size:
-    try:
-        return parse_size(value if isinstance(value, str) else str(value))
-    except ValueError as error:
-        raise UsageError(f"{path}: [vary] {key}: {error}") from error
 
 
 def _thickness(path: Path, key: str, value: object) -> tuple[int, int]:
