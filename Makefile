@@ -11,7 +11,7 @@ TRANSLATE := $(PYTHON) -P -m tilenca.emulator.translator --background
 ELF     := .pio/build/$(ENV)/firmware.elf
 
 # C++ that is written by hand; what `tilenca export` generates has its own check.
-CPP = $(shell find firmware tools test '(' -name '*.h' -o -name '*.cpp' ')' -not -path '*/model/*' -not -path 'test/vectors/*')
+CPP = $(shell find firmware tools test web '(' -name '*.h' -o -name '*.cpp' ')' -not -path '*/model/*' -not -path 'test/vectors/*')
 
 # Buffers are left uninitialised on purpose; the other suppression is for a false alarm on nested `?:`.
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \

@@ -1,0 +1,8 @@
+// What other programs use.
+export { TileArray } from "./array.js";
+export { linksOf, neighboursOf, tilesOf } from "./drawing.js";
+export { Emulator } from "./emulator.js";
+export { TilencaError } from "./module.js";
+export { Probe } from "./probe.js";
+export { EAST, NORTH, SOUTH, WEST } from "./sides.js";
+export { Tile } from "./tile.js";
