@@ -3,6 +3,8 @@ import { TileArray } from "./array.js";
 import { Module } from "./module.js";
 
 const ABI_VERSION = 1; // TILENCA_EMULATOR_ABI_VERSION
+// As array.js and tile.js write and read them, in bytes.
+const STRUCTURES = { tilenca_wire_fault: 32, tilenca_wire_counts: 24, tilenca_cycles: 24 };
 
 /** An instance of the emulator; its arrays share one memory. */
 export class Emulator {
@@ -16,7 +18,7 @@ export class Emulator {
    *   firmware it was built for
    */
   static async load(source = new URL("./tilenca_emulator.wasm", import.meta.url)) {
-    return new Emulator(await Module.load(source, "emulator", ABI_VERSION));
+    return new Emulator(await Module.load(source, "emulator", ABI_VERSION, STRUCTURES));
   }
 
   /**

@@ -6,3 +6,6 @@ export { TilencaError } from "./module.js";
 export { Probe } from "./probe.js";
 export { EAST, NORTH, SOUTH, WEST } from "./sides.js";
 export { Tile } from "./tile.js";
+export { RemoteArray } from "./remote.js";
+export { Network, Simulator } from "./simulator.js";
+export { GridBatch } from "./batch.js";

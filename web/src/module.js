@@ -41,7 +41,7 @@ async function compiled(source) {
   const address = new URL(source, import.meta.url);
   if (address.protocol === "file:") {
     const { readFile } = await import("node:fs/promises");
-    return WebAssembly.compile(await readFile(address));
+    return WebAssembly.compile(/** @type {Uint8Array<ArrayBuffer>} */ (await readFile(address)));
   }
   const response = await fetch(address);
   if (!response.ok) {
@@ -67,8 +67,9 @@ export class Module {
    * @param {Source} source
    * @param {string} name of the library, "emulator" or "simulator"
    * @param {number} version of the C interface that the caller was written for
+   * @param {Record<string, number>} structures the bytes of its structures, as the caller knows them
    */
-  static async load(source, name, version) {
+  static async load(source, name, version, structures) {
     const module = await compiled(source);
     /** @type {Module | undefined} */
     let made;
@@ -93,9 +94,13 @@ export class Module {
     const { exports } = await WebAssembly.instantiate(module, imports);
     made = new Module(exports, name);
     const found = made.call("abi_version");
-    if (found !== version) {
+    const wrong = Object.entries(structures).find(
+      ([structure, bytes]) => made?.call("size_of", made.string(structure)) !== bytes,
+    );
+    if (found !== version || wrong !== undefined) {
       throw new TilencaError(
-        `the ${name} has version ${found}, and this face is for ${version}; run \`make web\` again`,
+        `the ${name} has version ${found}, and this face is for ${version}, or another ${wrong?.[0] ?? "structure"}; ` +
+          "run `make web` again",
       );
     }
     return made;
@@ -142,7 +147,7 @@ export class Module {
    * @throws {TilencaError} it returned a number below 0
    */
   call(name, ...args) {
-    const result = (this.#functions[`tilenca_${name}`] ?? this.#functions[this.#prefix + name])(...args);
+    const result = this.#function(name)(...args);
     if (result < 0) {
       throw this.#refusal();
     }
@@ -156,11 +161,20 @@ export class Module {
    * @throws {TilencaError} it returned null
    */
   address(name, ...args) {
-    const result = this.#functions[`tilenca_${name}`](...args);
+    const result = this.#function(name)(...args);
     if (result === 0) {
       throw this.#refusal();
     }
     return result >>> 0;
+  }
+
+  /** @param {string} name */
+  #function(name) {
+    const found = this.#functions[`tilenca_${name}`] ?? this.#functions[this.#prefix + name];
+    if (found === undefined) {
+      throw new TilencaError(`this module has no function ${name}; run \`make web\` again`);
+    }
+    return found;
   }
 
   #refusal() {
