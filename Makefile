@@ -108,6 +108,7 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.kernel --write docs/BENCHMARKS.md
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
+	@$(TOOL) bench.web --write docs/BENCHMARKS.md
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)
