@@ -64,7 +64,8 @@ class Recipe:
         stretched: share of stretched drawings among the grids.
         damaged: share of drawings with tiles missing.
         unknown: share of drawings of no class, whose tiles learn to show a dash.
-        ramp: between these shares of the iterations damaged and unknown drawings grow to their full share.
+        ramp: between these shares of the iterations the drawings that are renewed grow to their full share;
+            training begins with those of the files and the stretched ones.
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
             often each failed lately.
         check_every: iterations from one short measurement to the next; training ends early when all targets
@@ -165,14 +166,15 @@ RECIPES: dict[str, Recipe] = {
     # reaches and what it costs.
     "forms": replace(
         FULL,
-        iterations=100_000,
+        iterations=80_000,
         undisturbed_pool=384,
-        stretched=0.12,
-        varied=0.33,
+        stretched=0.14,
+        varied=0.28,
         damaged=0.18,
-        unknown=0.2,
-        unlabelled=0.05,
-        check_every=10_000,
+        unknown=0.24,
+        unlabelled=0.04,
+        ramp=(0.02, 0.15),
+        check_every=20_000,
     ),
     # For trying out drawings: three sizes, no damage, no unknown drawings.
     "quick": replace(
