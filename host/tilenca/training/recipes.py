@@ -176,6 +176,21 @@ RECIPES: dict[str, Recipe] = {
         ramp=(0.02, 0.15),
         check_every=20_000,
     ),
+    # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
+    "many": replace(
+        FULL,
+        hidden=112,
+        iterations=60_000,
+        undisturbed_pool=384,
+        stretch=1.0,
+        stretched=0.0,
+        damaged=0.06,
+        unknown=0.1,
+        unlabelled=0.02,
+        ramp=(0.1, 0.3),
+        check_every=20_000,
+        validation_runs=20,
+    ),
     # For trying out drawings: three sizes, no damage, no unknown drawings.
     "quick": replace(
         FULL,
