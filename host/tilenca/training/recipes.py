@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from tilenca.base.errors import UsageError
+from tilenca.base.suggest import did_you_mean
 from tilenca.evaluation.suites import Aims
 from tilenca.model.file import DEFAULT_HIDDEN
 
@@ -243,7 +244,8 @@ def find_recipe(name: str) -> Recipe:
         UsageError: there is none; the message lists the recipes.
     """
     if name not in RECIPES:
-        raise UsageError(f"no recipe '{name}'; there are: {' '.join(RECIPES)}")
+        meant = did_you_mean(name, RECIPES)
+        raise UsageError(f"no recipe '{name}'{meant}; there are: {' '.join(RECIPES)}")
     return RECIPES[name]
 
 
