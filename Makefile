@@ -11,7 +11,7 @@ TRANSLATE := $(PYTHON) -P -m tilenca.emulator.translator --background
 ELF     := .pio/build/$(ENV)/firmware.elf
 
 # C++ that is written by hand; what `tilenca export` generates has its own check.
-CPP = $(shell find firmware tools test '(' -name '*.h' -o -name '*.cpp' ')' -not -path '*/model/*' -not -path 'test/vectors/*')
+CPP = $(shell find firmware tools test web '(' -name '*.h' -o -name '*.cpp' ')' -not -path '*/model/*' -not -path 'test/vectors/*')
 
 # Buffers are left uninitialised on purpose; the other suppression is for a false alarm on nested `?:`.
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --language=c++ \
@@ -25,8 +25,8 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs demo test check static format-check lint \
-	imports types budgets sanitize docs format train bench wheel clean
+.PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
+	imports types budgets sanitize docs format train bench web wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -35,7 +35,7 @@ help: ## list these targets
 setup: setup-demo ## make this clone ready: system packages, .venv, C++ libraries, PlatformIO
 
 setup-train: ## the same, with PyTorch for training
-setup-demo setup-train setup-test setup-check setup-docs:
+setup-demo setup-train setup-test setup-check setup-docs setup-web:
 	@sh tools/setup/setup.sh $(@:setup-%=%) $(if $(filter setup%,$(MAKECMDGOALS)),--next)
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
@@ -50,6 +50,14 @@ test: setup-test ## run every test: the firmware's core on this machine, then ho
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
 	@$(PYTHON) -m pytest -n auto --dist worksteal
+
+web: setup-web ## build the emulator and the simulator for browsers, into build/web/bundle; needs emscripten
+	@$(PIO) run -s -e $(ENV)
+	@$(TOOL) setup.web
+	@$(TOOL) release.web_model models/digits build/web/bundle/digits.json
+
+test-web: web setup-test ## build for browsers, and run the tests of that
+	@$(PYTHON) -m pytest -n 0 test/web
 
 check: static test ## what to run before every commit: format, lint, imports, types, budgets, documentation, tests
 
@@ -100,11 +108,12 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.kernel --write docs/BENCHMARKS.md
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
+	@$(TOOL) bench.web --write docs/BENCHMARKS.md
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)
 	@$(TOOL) release.wheel
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel build/web
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

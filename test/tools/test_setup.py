@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from setup import __main__ as setup_main
-from setup import command, python
+from setup import command, python, web
 from setup.__main__ import LEVELS, NEXT, levels_up_to
 from setup.command import ROOT, SetupError, Stamp, digest, run
 
@@ -175,6 +175,7 @@ def test_make_alone_lists_the_targets() -> None:
         ("test", ["demo", "train", "test"]),
         ("docs", ["demo", "train", "docs"]),
         ("check", ["demo", "train", "test", "docs", "check"]),
+        ("web", ["demo", "web"]),
     ],
 )
 def test_a_level_includes_those_below_it(level: str, reached: list[str]) -> None:
@@ -186,6 +187,26 @@ def test_every_level_has_its_extra_and_its_target() -> None:
     assert set(python.EXTRAS) == set(LEVELS)
     for level in LEVELS:
         assert f"setup-{level}" in makefile
+
+
+def test_a_node_without_tail_calls_is_refused_with_the_remedy() -> None:
+    web.check_node("v20.20.2")
+    web.check_node("v22.0.0")
+    with pytest.raises(SetupError, match=r"^node is v18\.19\.0, and 20 or later is needed.* install one"):
+        web.check_node("v18.19.0")
+    with pytest.raises(SetupError, match="node is silent"):
+        web.check_node("")
+
+
+def test_a_node_that_is_there_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.which", lambda program: f"/somewhere/{program}")
+    assert web.system_packages() == ["emscripten"]
+    monkeypatch.setattr("shutil.which", lambda _program: None)
+    assert web.system_packages() == ["emscripten", "nodejs", "npm"]
+
+
+def test_no_other_level_needs_the_compiler_for_browsers() -> None:
+    assert [level for level in LEVELS if "web" in levels_up_to(level)] == ["web"]
 
 
 @pytest.fixture
@@ -213,7 +234,7 @@ def test_what_the_levels_lack_is_installed_by_one_call_and_its_size_is_told(
     size = sum(python.SIZE_MB[level] for level in ("demo", "train", "test"))
     [told] = capsys.readouterr().err.splitlines()
     assert told.startswith(f"setup: installing Python packages, {size} MB on the disk: platformio, ")
-    install("demo", "train", "test")
+    install("demo", "train", "test", "web")
     assert len(pip) == 1, "all was there"
     (tmp_path / ".tilenca-test").unlink()
     install("demo", "train", "test")

@@ -37,13 +37,18 @@ if(TILENCA_LTO AND NOT TILENCA_BUILT)
 endif()
 
 # tilenca_library(NAME OBJECTS TARGET... [LTO]): the shared library libNAME.so of object libraries, whose public
-# header is include/tilenca/*.h of the present folder.
+# header is include/tilenca/*.h of the present folder. For WebAssembly only the objects: web/ makes modules of them.
 function(tilenca_library name)
     cmake_parse_arguments(PARSE_ARGV 1 arg "LTO" "" "OBJECTS")
-    add_library(${name} SHARED)
     foreach(objects IN LISTS arg_OBJECTS)
         target_link_libraries(${objects} PRIVATE tilenca_flags)
         target_include_directories(${objects} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    endforeach()
+    if(EMSCRIPTEN)
+        return()
+    endif()
+    add_library(${name} SHARED)
+    foreach(objects IN LISTS arg_OBJECTS)
         target_sources(${name} PRIVATE $<TARGET_OBJECTS:${objects}>)
     endforeach()
     if(arg_LTO AND TILENCA_CAN_LTO)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 
 from offline.seed import DEBIAN_PACKAGES
-from setup import command, native, pio, python
+from setup import command, native, pio, python, web
 from setup.command import SetupError, say
 from setup.side_by_side import Awaited, side_by_side
 
@@ -20,9 +20,16 @@ LEVELS = {
     "test": "as train, and run the tests",
     "docs": "as train, and build the documentation site",
     "check": "as test and docs, and check format, lint, types and budgets",
+    "web": "as demo, and compile for browsers",
 }
 # The levels that each one includes.
-INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["train"], "check": ["test", "docs"]}
+INCLUDED = {
+    "train": ["demo"],
+    "test": ["train"],
+    "docs": ["train"],
+    "check": ["test", "docs"],
+    "web": ["demo"],
+}
 # Debian packages by level. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {
     "demo": ["g++", "make", "cmake", "ninja-build", "avrdude"],
@@ -34,6 +41,7 @@ NEXT = {
     "test": "make test",
     "docs": "make docs",
     "check": "make check",
+    "web": "make web",
 }
 
 
@@ -60,6 +68,8 @@ def bring_up_to(levels: Sequence[str]) -> None:
             with compiler:
                 packages(levels[:1])  # the demo's, among them the compiler
             packages(levels[1:])
+            if "web" in levels:
+                native.install_system_packages(web.system_packages())
 
     def compile_libraries() -> None:
         compiler.wait()
@@ -70,13 +80,16 @@ def bring_up_to(levels: Sequence[str]) -> None:
         system.wait()
         pio.make_ready()
 
-    side_by_side(
-        {
-            "system packages": install_system,
-            "the C++ libraries": compile_libraries,
-            "Python packages and PlatformIO": install_python,
-        }
-    )
+    def install_web() -> None:
+        system.wait()
+        web.make_ready()
+
+    lanes = {
+        "system packages": install_system,
+        "the C++ libraries": compile_libraries,
+        "Python packages and PlatformIO": install_python,
+    }
+    side_by_side(lanes | ({"the web's packages": install_web} if "web" in levels else {}))
 
 
 def main() -> int:

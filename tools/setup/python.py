@@ -22,9 +22,10 @@ EXTRAS = {
     "test": ["test", "wheel"],
     "check": ["check"],
     "docs": ["docs"],
+    "web": [],
 }
 # What they take on the disk, roughly: it says how long the download may be.
-SIZE_MB = {"demo": 110, "train": 970, "test": 15, "check": 100, "docs": 80}
+SIZE_MB = {"demo": 110, "train": 970, "test": 15, "check": 100, "docs": 80, "web": 0}
 # The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 
@@ -113,7 +114,7 @@ def _install_levels(levels: Sequence[str], project: dict[str, Any]) -> None:
     """Installs what the levels lack, all at once: pip resolves their common dependencies once."""
     wanted = {level: requirements(level, project) for level in levels}
     stamps = {level: _stamp(level, wanted[level]) for level in levels}
-    lacking = [level for level in levels if not stamps[level].is_current()]
+    lacking = [level for level in levels if wanted[level] and not stamps[level].is_current()]
     if "demo" not in lacking and installed_version("platformio") != pinned_version("platformio"):
         lacking.insert(0, "demo")
     if not lacking:

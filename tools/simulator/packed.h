@@ -15,9 +15,9 @@ struct PackedLayer {
       public:
         explicit Row(const float* first) : next_(first) {}
         const float* next() {
-            const float* weights = next_;
+            const float* row = next_;
             next_ += kRows;
-            return weights;
+            return row;
         }
 
       private:

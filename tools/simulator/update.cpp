@@ -13,17 +13,24 @@ namespace {
 typedef int8_t Bytes __attribute__((vector_size(16)));
 typedef int16_t Words __attribute__((vector_size(16)));
 
+// Elements of two vectors, by their numbers; the first GCC that knows clang's name for it is 12.
+#ifdef __clang__
+#define TILENCA_SHUFFLE(Vector, a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define TILENCA_SHUFFLE(Vector, a, b, ...) __builtin_shuffle(a, b, Vector{__VA_ARGS__})
+#endif
+
 Bytes low_halves(Bytes a, Bytes b) {
-    return __builtin_shuffle(a, b, Bytes{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23});
+    return TILENCA_SHUFFLE(Bytes, a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
 }
 Bytes high_halves(Bytes a, Bytes b) {
-    return __builtin_shuffle(a, b, Bytes{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31});
+    return TILENCA_SHUFFLE(Bytes, a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
 }
 Words low_halves(Words a, Words b) {
-    return __builtin_shuffle(a, b, Words{0, 8, 1, 9, 2, 10, 3, 11});
+    return TILENCA_SHUFFLE(Words, a, b, 0, 8, 1, 9, 2, 10, 3, 11);
 }
 Words high_halves(Words a, Words b) {
-    return __builtin_shuffle(a, b, Words{4, 12, 5, 13, 6, 14, 7, 15});
+    return TILENCA_SHUFFLE(Words, a, b, 4, 12, 5, 13, 6, 14, 7, 15);
 }
 
 // Takes W vectors of n values for one sequence and shuffles it like cards, `times` over. log2(W) times it

@@ -107,7 +107,8 @@ TILENCA_API int tilenca_array_count_instructions(tilenca_array* array);
 // C++ that does what the instructions that were counted most do, for a compiler that makes a shared library
 // of it. Valid until the next call of this.
 TILENCA_API const char* tilenca_array_translated(tilenca_array* array);
-// Executes the blocks of such a library, of the same image and version of the emulator.
+// Executes the blocks of such a library, of the same image and version of the emulator. Null: those that the
+// emulator itself was linked with, as in a browser.
 TILENCA_API int tilenca_array_use_translation(tilenca_array* array, const char* path);
 
 // --- cables ---

@@ -168,8 +168,8 @@ const char* tilenca_array_translated(tilenca_array* array) {
 
 int tilenca_array_use_translation(tilenca_array* array, const char* path) {
     return attempted([&] {
-        const std::string name = &present(path, "the translation's path");
-        if (!array_of(array).use_translation(name)) {
+        if (!array_of(array).use_translation(path)) {
+            const std::string name = path == nullptr ? "the emulator's own blocks" : path;
             throw Refusal(name + ": a translation of another image");
         }
     });

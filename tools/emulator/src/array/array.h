@@ -53,8 +53,9 @@ class Array {
     void count_instructions();
     // C++ that does what the instructions that were counted most do.
     std::string translated() const;
-    // Executes the blocks of a translation in place of instructions. False: it is of another image.
-    bool use_translation(const std::string& path);
+    // Executes the blocks of a translation in place of instructions: of a shared library, or (null) of those
+    // that the emulator was linked with. False: it is of another image.
+    bool use_translation(const char* path);
 
     Tile& tile(unsigned index) { return *tiles_[index]; }
     unsigned size() const { return static_cast<unsigned>(tiles_.size()); }

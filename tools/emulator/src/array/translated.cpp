@@ -23,8 +23,8 @@ std::string Array::translated() const {
                                 special);
 }
 
-bool Array::use_translation(const std::string& path) {
-    return program_->lay(translate::load(path));
+bool Array::use_translation(const char* path) {
+    return program_->lay(path == nullptr ? translate::built_in() : translate::load(path));
 }
 
 } // namespace tilenca

@@ -30,6 +30,7 @@ struct Instruction {
     int32_t jump; // words from here to where a branch, jump or skip goes
 };
 
-static_assert(sizeof(Instruction) == 16, "four instructions per cache line");
+// Four instructions per cache line where addresses have eight bytes.
+static_assert(sizeof(Instruction) == sizeof(Handler) + 8, "no gaps");
 
 } // namespace tilenca::avr

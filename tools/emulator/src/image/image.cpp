@@ -1,9 +1,6 @@
 #include "image/image.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include "image/file.h"
 
 namespace tilenca {
 
@@ -37,11 +34,7 @@ uint32_t Image::data_end() const {
 }
 
 Image load_image(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw ImageError(path + ": " + std::strerror(errno) + "; build the firmware first");
-    }
-    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const std::vector<uint8_t> bytes = read_file(path);
     if (bytes.empty()) {
         throw ImageError(path + ": cannot be read, or empty; give the ELF or Intel HEX file of a build");
     }

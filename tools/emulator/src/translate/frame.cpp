@@ -10,7 +10,7 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 2; // one more with every change of what is emitted
+constexpr unsigned kTextVersion = 3; // one more with every change of what is emitted
 
 // What comes after the places of the core's members and before the functions.
 constexpr const char* kPrelude = R"text(
@@ -21,7 +21,7 @@ struct Instruction;
 using Handler = void (*)(Cpu*, const Instruction*, uint64_t, uint32_t, uint32_t, uint32_t);
 struct Instruction {
     Handler run;
-    uint64_t operands;
+    uint32_t operands[2];
 };
 
 #define STATE Cpu *cpu, const Instruction *at, uint64_t cycle, uint32_t carry, uint32_t zero, uint32_t nvh

@@ -3,20 +3,11 @@
 #include "avr/ops.h"
 #include "translate/frame.h"
 
-#include <dlfcn.h>
-#include <map>
-#include <mutex>
-
 namespace tilenca::translate {
 
-Translation::Translation(const std::string& path) : library_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (library_ == nullptr) {
-        throw TranslationError(path + ": no library");
-    }
-    table_ = static_cast<const Table*>(dlsym(library_, "tilenca_blocks"));
+Translation::Translation(const Table* table, const std::string& name) : table_(table) {
     if (table_ == nullptr || layout() != table_->layout) {
-        dlclose(library_);
-        throw TranslationError(path + ": made by another version of the emulator");
+        throw TranslationError(name + ": made by another version of the emulator");
     }
     *table_->leave = avr::ops::leave;
     // The interpreter's handlers follow from the instructions, which are the same wherever this fits.
@@ -30,10 +21,6 @@ Translation::Translation(const std::string& path) : library_(dlopen(path.c_str()
     }
 }
 
-Translation::~Translation() {
-    dlclose(library_);
-}
-
 bool Translation::fits(const avr::Program& program) const {
     for (uint32_t i = 0; i < table_->code_count; i++) {
         if (program.word(table_->code_words[i]) != table_->code[i]) {
@@ -41,17 +28,6 @@ bool Translation::fits(const avr::Program& program) const {
         }
     }
     return true;
-}
-
-std::shared_ptr<const Translation> load(const std::string& path) {
-    static std::mutex loading;
-    static std::map<std::string, std::weak_ptr<const Translation>> loaded;
-    const std::lock_guard<std::mutex> lock(loading);
-    std::shared_ptr<const Translation> found = loaded[path].lock();
-    if (found == nullptr) {
-        loaded[path] = found = std::make_shared<const Translation>(path);
-    }
-    return found;
 }
 
 } // namespace tilenca::translate

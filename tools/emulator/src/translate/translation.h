@@ -10,7 +10,7 @@
 
 namespace tilenca::translate {
 
-// What a library says of itself: `tilenca_blocks` in it.
+// What compiled blocks say of themselves: `tilenca_blocks` in them.
 struct Table {
     const char* layout;
     uint32_t count;
@@ -29,11 +29,9 @@ struct TranslationError : std::runtime_error {
 
 class Translation : public avr::Overlay {
   public:
-    // Throws TranslationError: it is no translation, or of another version of the emulator.
-    explicit Translation(const std::string& path);
-    ~Translation() override;
-    Translation(const Translation&) = delete;
-    Translation& operator=(const Translation&) = delete;
+    // `table` must live on; `name` is for the message. Throws TranslationError: it is null, or of another
+    // version of the emulator.
+    Translation(const Table* table, const std::string& name);
 
     // Whether all that was translated stands in the program.
     bool fits(const avr::Program& program) const override;
@@ -42,11 +40,14 @@ class Translation : public avr::Overlay {
     avr::Handler function(size_t block) const override { return table_->functions[block]; }
 
   private:
-    void* library_;
     const Table* table_;
 };
 
-// The same for all who ask for it while one of them has it. Throws TranslationError.
+// The translation in a shared library; the same for all who ask for it while one of them has it. Throws
+// TranslationError.
 std::shared_ptr<const Translation> load(const std::string& path);
+
+// The translation that the emulator itself was linked with. Throws TranslationError: with none.
+std::shared_ptr<const Translation> built_in();
 
 } // namespace tilenca::translate

@@ -1,0 +1,55 @@
+"""The bench of the web measures the same block everywhere, and sums what its processes have used."""
+
+import gzip
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bench import native_block, web
+from bench.chromium import processor_s
+from support.avr import build_target
+from tilenca.base import paths
+
+
+def test_sizes_are_those_of_the_files_and_of_each_gzipped(tmp_path: Path) -> None:
+    one, two = tmp_path / "one", tmp_path / "two"
+    one.write_bytes(bytes(30_000))
+    two.write_bytes(os.urandom(20_000))
+    gzipped = len(gzip.compress(bytes(30_000), 9)) + len(gzip.compress(two.read_bytes(), 9))
+    assert web.size([one, two]) == f"50 KB, gzipped {gzipped / 1000:.0f} KB"
+
+
+def test_the_processor_time_of_descendants_counts() -> None:
+    before_s = processor_s(os.getpid())
+    busy = "import time\nwhile time.process_time() < 0.3: pass\ninput()"
+    with subprocess.Popen(
+        [sys.executable, "-c", f"print(flush=True)\n{busy}"], stdin=subprocess.PIPE
+    ) as child:
+        own_s = processor_s(child.pid)
+        for _ in range(2_000_000):
+            own_s = processor_s(child.pid)
+            if own_s >= 0.3:
+                break
+        assert processor_s(os.getpid()) - before_s >= 0.29
+        child.communicate(b"\n")
+
+
+def test_the_native_block_runs_in_a_process_without_this_environments_tilenca(
+    firmware: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    build_target("tilenca_emulator")
+    monkeypatch.setattr(web, "FIRMWARE_ELF", firmware)
+    monkeypatch.setattr(web, "WARM_UP_S", 0.02)
+    monkeypatch.setattr(web, "MEASURED_S", 0.02)
+    measured = web.native(paths.ROOT / "host", translated=False)
+    assert 0 < measured["cpuS"] < 60
+    assert json.loads(json.dumps(native_block.main(str(firmware), web.case(False)))).keys() == measured.keys()
+
+
+def test_a_program_that_fails_is_named(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="No module named"):
+        web.native(tmp_path, translated=False)

@@ -1,0 +1,142 @@
+"""The emulator in a browser, beside this machine's own: python -m bench.web [--against DIR] [--write FILE].
+
+Twenty tiles of the real firmware in a block. All cases take turns, each in a process of its own; each figure
+is the best of a few rounds, in processor time, since other load changes that least.
+"""
+
+import argparse
+import gzip
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from bench import chromium
+from bench.publish import publish
+from tilenca.base.errors import BuildError
+from tilenca.base.paths import BUILD, FIRMWARE_ELF, ROOT
+from tilenca.emulator.translator import make
+
+BUNDLE = BUILD / "web" / "bundle"
+EMULATED = ("tilenca_emulator.wasm", "firmware.elf")
+BEGIN, END = "<!-- web: made by `python -m bench.web`, do not edit -->", "<!-- /web -->"
+ROWS, COLUMNS = 5, 4
+# Browsers compile what runs much while it runs; the first second says more about that than about tiles.
+WARM_UP_S, MEASURED_S = 1.5, 3.0
+NATIVE = ROOT / "tools" / "bench" / "native_block.py"
+
+Case = dict[str, Any]
+Measured = dict[str, float]
+
+
+def case(translated: bool) -> Case:
+    """The block as web/bench/block.js and native_block.py take it."""
+    block = {"rows": ROWS, "columns": COLUMNS, "translated": translated}
+    return block | {"warmUpS": WARM_UP_S, "measuredS": MEASURED_S}
+
+
+def _told(command: list[str], env: dict[str, str] | None = None) -> Measured:
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
+    if done.returncode != 0:
+        raise RuntimeError(f"{command[0]}: {done.stderr.strip().splitlines()[-1:]}")
+    measured: Measured = json.loads(done.stdout)
+    return measured
+
+
+def native(host: Path, translated: bool) -> Measured:
+    """The emulator of a tree, whose packages are in `host`."""
+    packages = next(Path(sys.prefix).glob("lib/python3*/site-packages"))
+    # Without this environment's own tilenca, which would come first.
+    env = os.environ | {"PYTHONPATH": f"{host}:{packages}"}
+    command = [sys.executable, "-S", str(NATIVE), str(FIRMWARE_ELF), json.dumps(case(translated))]
+    return _told(command, env)
+
+
+def node(translated: bool) -> Measured:
+    """The bundle under node."""
+    script = ROOT / "web" / "bench" / "node.js"
+    return _told(["node", str(script), str(BUNDLE), json.dumps(case(translated))])
+
+
+def cases(against: Path | None) -> dict[str, Callable[[], Measured]]:
+    """What is measured, by its name."""
+    host = ROOT / "host"
+    found: dict[str, Callable[[], Measured]] = {
+        "native": lambda: native(host, True),
+        "native, interpreted": lambda: native(host, False),
+        "node": lambda: node(True),
+        "node, interpreted": lambda: node(False),
+    }
+    if (browser := chromium.program()) is not None:
+        found["Chromium"] = lambda: chromium.measure(browser, BUNDLE, case(True))
+        found["Chromium, interpreted"] = lambda: chromium.measure(browser, BUNDLE, case(False))
+    if against is not None:
+        found[f"native, of {against.name}"] = lambda: native(against / "host", False)
+    return found
+
+
+def size(files: list[Path]) -> str:
+    """Bytes of files, raw and gzipped each."""
+    contents = [path.read_bytes() for path in files]
+    gzipped = sum(len(gzip.compress(content, 9)) for content in contents)
+    return f"{sum(map(len, contents)) / 1000:.0f} KB, gzipped {gzipped / 1000:.0f} KB"
+
+
+def measure(rounds: int, against: Path | None) -> list[tuple[str, str]]:
+    """Name and figure; one row per figure."""
+    found = cases(against)
+    best: dict[str, Measured] = {}
+    for _ in range(rounds):
+        for name, run in found.items():
+            told = run()
+            known = best.setdefault(name, told)
+            best[name] = {key: min(value, known[key]) for key, value in told.items()}
+    base = best["native"]["cpuS"]
+    rows = [
+        (
+            name,
+            f"{told['cpuS'] / MEASURED_S:.2f} s, {told['cpuS'] / base:.2f} times native, "
+            f"{MEASURED_S / told['wallS']:.2f} times real time",
+        )
+        for name, told in best.items()
+    ]
+    rows.append(("the emulator's module, with blocks", size([BUNDLE / "tilenca_emulator.wasm"])))
+    rows.append(("the simulator's module", size([BUNDLE / "tilenca_simulator.wasm"])))
+    loaded = [path for path in BUNDLE.iterdir() if path.suffix == ".js" or path.name in EMULATED]
+    rows.append(("what a page with emulated tiles loads: module, JavaScript, firmware", size(sorted(loaded))))
+    return rows
+
+
+def main() -> int:
+    """Prints the table, and writes it if asked to."""
+    parser = argparse.ArgumentParser(description="How fast the emulator is in a browser.")
+    parser.add_argument("--write", type=Path, metavar="F", help="put the table into this document")
+    parser.add_argument("--against", type=Path, metavar="DIR", help="the tree of another version, built")
+    parser.add_argument(
+        "--rounds", type=int, default=5, help="take the best of so many (default: %(default)s)"
+    )
+    args = parser.parse_args()
+    if not (BUNDLE / "tilenca_emulator.wasm").exists() or shutil.which("node") is None:
+        print(
+            "bench: nothing is built for browsers, so that is not measured; run `make web`", file=sys.stderr
+        )
+        return 0
+    try:
+        make(FIRMWARE_ELF)
+        rows = measure(args.rounds, args.against)
+    except (BuildError, RuntimeError) as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 1
+    head = ["| twenty tiles of the firmware, processor seconds per emulated second | measured |", "|---|---|"]
+    table = "\n".join([*head, *(f"| {name} | {figure} |" for name, figure in rows)])
+    note = f"Best of {args.rounds} rounds, in turns; other programs may have run meanwhile."
+    publish(f"{table}\n\n{note}", args.write, BEGIN, END)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
