@@ -102,6 +102,7 @@ class Chip final : private Bus {
     void flash_state(Archive& archive);
     void forget_past(PinId pin);
     void write_system(uint16_t address, uint8_t value, uint64_t cycle);
+    void write_control(uint8_t value, uint64_t cycle);
     void synchronise_prescalers(uint8_t value, uint64_t cycle);
     Peripheral& find_at_slot(Slot slot);
 
@@ -119,13 +120,15 @@ class Chip final : private Bus {
     std::unique_ptr<Twi> twi_;
     std::unique_ptr<Watchdog> watchdog_;
     std::unique_ptr<SelfProgramming> self_programming_;
+    Prescaler prescaler_, own_prescaler_; // of timer 2
     std::array<std::unique_ptr<Timer>, 6> timers_;
     std::array<std::unique_ptr<Usart>, 4> usarts_;
     std::array<Peripheral*, kSramStart> at_address_{};
     std::array<Peripheral*, kVectors> at_vector_{};
     std::array<Peripheral*, kSlots> at_slot_{};
     std::vector<Peripheral*> all_;
-    uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0;
+    uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0, jtag_changeable_until_ = 0;
+    uint8_t jtag_wanted_ = 0;
     uint16_t stack_before_ = 0; // the stack pointer while its two bytes are being written
     uint64_t stack_written_until_ = 0;
     std::set<uint32_t> breakpoints_, marks_;

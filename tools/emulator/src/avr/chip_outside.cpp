@@ -151,8 +151,8 @@ void Chip::state(Archive& archive) {
         peripheral->clock_state(archive);
         peripheral->state(archive);
     }
-    archive(vectors_movable_until_, prescaler_changeable_until_, stack_before_, stack_written_until_,
-            told_read_, told_write_);
+    archive(vectors_movable_until_, prescaler_changeable_until_, jtag_changeable_until_, jtag_wanted_,
+            stack_before_, stack_written_until_, prescaler_, own_prescaler_, told_read_, told_write_);
     if (archive.loading()) {
         self_programming_->program_changed();
         marks_passed_.clear();

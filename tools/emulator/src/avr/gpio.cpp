@@ -1,12 +1,14 @@
 #include "avr/gpio.h"
 
 #include "avr/pin_registers.h"
+#include "avr/registers.h"
 
 namespace tilenca::avr {
 
 Gpio::Gpio(const Core& core) : Peripheral(core) {
     for (unsigned i = 0; i < kPorts; i++) {
         ports_[i].base = static_cast<uint16_t>(i < 7 ? 0x20 + 3 * i : 0x100 + 3 * (i - 7));
+        ports_[i].exist = kRegisters.implemented[ports_[i].base];
     }
 }
 
@@ -76,7 +78,9 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
 uint8_t Gpio::pins_as_read(Port& port, uint64_t cycle) {
     update(port, cycle);
     const bool too_soon = cycle == port.written + 1;
-    return too_soon ? compute_levels(port, cycle, port.ddr_before, port.latch_before) : port.levels;
+    const uint8_t levels =
+        too_soon ? compute_levels(port, cycle, port.ddr_before, port.latch_before) : port.levels;
+    return levels & port.exist;
 }
 
 uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch) {

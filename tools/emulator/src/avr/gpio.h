@@ -111,6 +111,7 @@ class Gpio final : public Peripheral {
   private:
     struct Port {
         uint16_t base = 0;    // PIN; DDR and PORT follow
+        uint8_t exist = 0xFF; // its pins
         uint64_t written = 0; // cycle of the last write to any of the three
         uint8_t ddr_before = 0, latch_before = 0;
         uint8_t levels = 0xFF;

@@ -151,15 +151,14 @@ void Timer::clock_stops(uint64_t cycle) {
     core_.schedule.cancel(slot_);
 }
 
-void Timer::clock_starts(uint64_t cycle, uint64_t stood) {
-    origin_ += stood;
+void Timer::clock_starts(uint64_t cycle, uint64_t) {
     synced_ = cycle;
     reschedule();
 }
 
 void Timer::state(Archive& archive) {
-    archive(counter_, driving_, temp_, divisor_, origin_, synced_, external_clock_, comparator_captures_,
-            capture_due_, told_flags_);
+    archive(counter_, driving_, temp_, divisor_, synced_, external_clock_, comparator_captures_, capture_due_,
+            told_flags_);
     if (archive.loading()) {
         set_divisor(divisor_);
         for (unsigned i = 0; i < channels(); i++) {

@@ -220,7 +220,6 @@ void Usart::reset(uint64_t cycle) {
     waiting_ = 0;
     receiver_ = Receiver::Off;
     baud_origin_ = cycle;
-    byte(c()) = 0x06;
 }
 
 void Usart::clock_stops(uint64_t) {
