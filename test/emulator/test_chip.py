@@ -3,8 +3,8 @@
 import pytest
 
 from support.avr import Compile, words
+from support.avr import IdealArray as Array
 from tilenca.base.errors import TilencaError
-from tilenca.emulator import Array
 
 
 def test_an_eeprom_write_takes_its_time_and_lasts(avr: Compile) -> None:

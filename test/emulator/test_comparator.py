@@ -3,7 +3,7 @@
 import pytest
 
 from support.avr import Compile
-from tilenca.emulator import Array
+from support.avr import IdealArray as Array
 
 BANDGAP = 225  # of 1024: 1.1 V of 5 V
 

@@ -3,7 +3,8 @@
 import pytest
 
 from support.avr import Compile, words
-from tilenca.emulator import Array, ResetCause
+from support.avr import IdealArray as Array
+from tilenca.emulator import ResetCause
 
 # Sleeps in MODE while timer 1 counts cycles; a pin change on PK7 wakes it.
 SLEEPER = """

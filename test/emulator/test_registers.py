@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from support.avr import PRELUDE, ROOT, run_tool, words
-from tilenca.emulator import Array
+from support.avr import IdealArray as Array
 
 TABLE = ROOT / "tools" / "emulator" / "src" / "avr" / "registers.inc"
 ROW = re.compile(r"TILENCA_(REGISTER|PAIR)\((0x\w+), (\w+), (0x\w+), (0x\w+), (0x\w+), (0x\w+)\)")

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from support.avr import Compile, words
-from tilenca.emulator import Array
+from support.avr import IdealArray as Array
 
 
 def result(elf: object, count: int, seconds: float = 0.01) -> bytes:

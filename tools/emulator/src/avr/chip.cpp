@@ -13,7 +13,8 @@ namespace {
 
 constexpr uint16_t kPinFirst = 0x20, kFlagsFirst = 0x35, kFlagsLast = 0x3C, kGtccr = 0x43, kSmcr = 0x53;
 constexpr uint16_t kMcusr = 0x54, kMcucr = 0x55, kSreg = 0x5F;
-constexpr uint8_t kIvce = 1, kIvsel = 2, kJtd = 0x80;
+constexpr uint8_t kIvce = 1, kIvsel = 2, kPud = 0x10, kJtd = 0x80;
+constexpr uint16_t kDidr2 = 0x7D, kDidr0 = 0x7E, kDidr1 = 0x7F;
 constexpr uint64_t kSequenceCycles = 4; // so long a protected bit can be changed after it was unlocked
 constexpr uint8_t kPsrSync = 1, kPsrAsync = 2, kTsm = 0x80;
 constexpr uint16_t kClkpr = 0x61, kPrr0 = 0x64, kPrr1 = 0x65, kOsccal = 0x66, kSpl = 0x5D, kSph = 0x5E;
@@ -51,6 +52,7 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
     for (unsigned i = 0; i < usarts_.size(); i++) {
         usarts_[i] = std::make_unique<Usart>(core, *gpio_, i);
         attach(*usarts_[i]);
+        gpio_->attach_line(usarts_[i]->receive_pin(), Drive::Open); // a receiver listens to a line
     }
     const std::initializer_list<Peripheral*> others = {
         eeprom_.get(), adc_.get(),      comparator_.get(),      spi_.get(),
@@ -59,7 +61,8 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
         attach(*one);
     }
     for (uint16_t address = kIoStart; address < kSramStart; address++) {
-        const bool system = address == kGtccr || address == kMcusr || address == kMcucr ||
+        const bool inputs_off = address >= kDidr2 && address <= kDidr1;
+        const bool system = inputs_off || address == kGtccr || address == kMcusr || address == kMcucr ||
                             address == kClkpr || address == kPrr0 || address == kPrr1;
         // Stored bytes: what is written is looked at, or loses the bits that do not exist.
         if (system || is_unmodelled(address) || kRegisters.implemented[address] != 0xFF) {
@@ -103,6 +106,7 @@ void Chip::join() {
             }
         });
     }
+    gpio_->on_line_changed([this](PinId pin) { line_changed(pin); });
     comparator_->on_setup(
         [this](uint64_t cycle) { timers_[1]->capture_from_comparator(comparator_->captures(), cycle); });
     comparator_->on_change([this](bool level, uint64_t cycle) {
@@ -127,7 +131,37 @@ void Chip::update_triggers(uint64_t cycle) {
                               cycle);
 }
 
+void Chip::set_hardware(const Hardware& hardware) {
+    hardware_ = hardware;
+    Random random(hardware.seed);
+    gpio_->noise().set(hardware.floating_inputs, random.next());
+    watchdog_->set_error(hardware.watchdog_error * (2 * random.uniform() - 1));
+    random_ = Random(random.next());
+    power_on();
+}
+
+// The program begins when the start-up time has passed, in which nothing runs.
 void Chip::reset(ResetCause cause) {
+    restart(cause);
+    cpu_.cycle += start_up_cycles(cause);
+    prescaler_.reset(cpu_.cycle);
+    own_prescaler_.reset(cpu_.cycle);
+    const bool by_watchdog = (cpu_.data[kMcusr] & static_cast<uint8_t>(ResetCause::Watchdog)) != 0;
+    if (by_watchdog || fuses_.watchdog_always_on()) {
+        watchdog_->force_on(cpu_.cycle);
+    }
+}
+
+uint64_t Chip::start_up_cycles(ResetCause cause) const {
+    if (!hardware_.start_up) {
+        return 0;
+    }
+    const Fuses::StartUp time = fuses_.start_up();
+    const uint64_t crystal = cause == ResetCause::PowerOn ? time.crystal_cycles : 0;
+    return (crystal + Fuses::kResetCycles) / cpu_.clock_divisor + watchdog_->cycles(time.watchdog_ticks);
+}
+
+void Chip::restart(ResetCause cause) {
     const uint8_t causes = cause == ResetCause::PowerOn ? 0 : cpu_.data[kMcusr];
     cpu_.reset(fuses_.resets_to_boot() ? fuses_.boot_start() : 0);
     for (uint16_t address = kIoStart; address < kSramStart; address++) {
@@ -136,15 +170,9 @@ void Chip::reset(ResetCause cause) {
     cpu_.data[kOsccal] = SelfProgramming::kCalibration;
     cpu_.data[kMcusr] = causes | static_cast<uint8_t>(cause);
     vectors_movable_until_ = prescaler_changeable_until_ = jtag_changeable_until_ = 0;
-    prescaler_.reset(cpu_.cycle);
-    own_prescaler_.reset(cpu_.cycle);
     update_clocks(cpu_.cycle);
     for (Peripheral* peripheral : all_) {
         peripheral->reset(cpu_.cycle);
-    }
-    const bool by_watchdog = (cpu_.data[kMcusr] & static_cast<uint8_t>(ResetCause::Watchdog)) != 0;
-    if (by_watchdog || fuses_.watchdog_always_on()) {
-        watchdog_->force_on(cpu_.cycle);
     }
     const uint32_t divisor = fuses_.starts_at_an_eighth() ? 8 : 1;
     cpu_.data[kClkpr] = divisor == 8 ? 3 : 0;
@@ -152,10 +180,22 @@ void Chip::reset(ResetCause cause) {
     cpu_.clock_divisor = divisor;
 }
 
-void Chip::power_on() {
+void Chip::forget_sram() {
     std::memset(cpu_.data, 0, sizeof cpu_.data);
+    for (uint16_t at = 0; hardware_.sram_noise && at < kDataBytes; at++) {
+        cpu_.data[at] = at < kIoStart || at >= kSramStart ? static_cast<uint8_t>(random_.next() >> 56) : 0;
+    }
     cpu_.fault.clear();
     cpu_.stack_deepest = kDataBytes;
+}
+
+void Chip::power_off() {
+    forget_sram();
+    restart(ResetCause::PowerOn);
+}
+
+void Chip::power_on() {
+    forget_sram();
     reset(ResetCause::PowerOn);
 }
 
@@ -214,6 +254,10 @@ void Chip::write_system(uint16_t address, uint8_t value, uint64_t cycle) {
         update_clocks(cycle + 1);
     } else if (address == kGtccr) {
         synchronise_prescalers(value, cycle + 1);
+    } else if (address == kDidr0 || address == kDidr2) { // ADC0 to 7, and 8 to 15
+        gpio_->set_inputs_off(port_index(address == kDidr0 ? 'F' : 'K'), value);
+    } else if (address == kDidr1) { // AIN0 and AIN1
+        gpio_->set_inputs_off(port_index('E'), static_cast<uint8_t>(value << 2));
     } else if (const char* function = unmodelled_function(address, value); function != nullptr) {
         warnings_.once(function);
     }
@@ -230,6 +274,7 @@ void Chip::write_control(uint8_t value, uint64_t cycle) {
     const uint8_t kept = (movable ? 0 : kIvsel) | (repeated ? 0 : kJtd);
     cpu_.data[kMcucr] = static_cast<uint8_t>(((value & ~kept) | (before & kept)) & ~kIvce);
     cpu_.vector_base = (cpu_.data[kMcucr] & kIvsel) != 0 ? fuses_.boot_start() : 0;
+    gpio_->set_pull_ups((value & kPud) == 0, cycle);
 }
 
 // Compilers write the high byte first, and the low byte at once after it.

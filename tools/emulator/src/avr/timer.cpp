@@ -154,6 +154,7 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     sync(cycle);
     if (address == mask_register_) {
         byte(address) = value;
+        watch_inputs(cycle);
     } else if (address < base_ + first_value) {
         write_control(address, value, cycle);
     } else {
