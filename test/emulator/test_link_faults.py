@@ -24,7 +24,7 @@ int main(void) {
 
 
 def pair(elf: object, **options: object) -> Array:
-    return Array(str(elf), 2, [(0, EAST, 1, WEST)], **options)  # type: ignore[arg-type]
+    return Array(str(elf), 2, [(0, EAST, 1, WEST)], **options)
 
 
 def heard(tile: EmulatedTile) -> list[int]:
