@@ -5,7 +5,7 @@
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from tilenca.emulator.faults import Faults, FaultSpec
 from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.tile import EmulatedTile
 from tilenca.emulator.types import port_name
+from tilenca.emulator.voice import Voice
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
 from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
@@ -66,35 +67,6 @@ class EmulationSettings:
     faults: tuple[FaultSpec, ...] = ()
     threads: int = 1
     eeprom: Path | None = None
-
-
-@dataclass
-class _Voice:
-    """The sentences of one tile so far.
-
-    Attributes:
-        started_s: when its clock of milliseconds was 0; None: it has not reported yet.
-        first_update_s: when it reported its first update; None: it has not.
-    """
-
-    reader: LineReader = field(default_factory=LineReader)
-    reports: list[TileSentence] = field(default_factory=list)
-    links: dict[str, LinkSentence] = field(default_factory=dict)
-    started_s: float | None = None
-    first_update_s: float | None = None
-
-    def restart(self) -> None:
-        """Forgets the reports: the tile has been reset."""
-        self.reports.clear()
-        self.started_s = self.first_update_s = None
-
-    def note(self, report: TileSentence, said_s: float, rate: float) -> None:
-        """Adds a report that it began to send at that time, with a clock of that rate."""
-        self.reports.append(report)
-        if self.started_s is None:
-            self.started_s = said_s - report.uptime_ms / 1000 / rate
-        if self.first_update_s is None and report.updates > 0:
-            self.first_update_s = said_s
 
 
 def firmware_settings(elf: Path) -> Settings | None:
@@ -157,7 +129,7 @@ class Emulation:
         for spec in settings.faults:
             self._faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
-        self._voices = [_Voice() for _ in range(count)]
+        self._voices = [Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # the firmware's own greeting, the same from every tile
         for tile in self.array:
             kept = settings.eeprom and load_eeprom(tile, settings.eeprom)
