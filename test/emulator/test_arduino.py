@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from support.avr import ARDUINO, Compile
-from tilenca.emulator import Array, EmulatedTile
+from support.avr import IdealArray as Array
+from tilenca.emulator import EmulatedTile
 
 EXAMPLES = sorted(ARDUINO.glob("libraries/*/examples/*/*.ino"))
 # Those that join two boards by I2C: here nobody is at the other end, and what that costs is told.

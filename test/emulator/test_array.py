@@ -3,9 +3,10 @@
 import pytest
 
 from support.avr import Compile
+from support.avr import IdealArray as Array
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, WEST
-from tilenca.emulator import Array, EmulatedTile
+from tilenca.emulator import EmulatedTile
 from tilenca.emulator.array import CABLE_DELAY_S
 from tilenca.emulator.library import call
 

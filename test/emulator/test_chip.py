@@ -3,8 +3,8 @@
 import pytest
 
 from support.avr import Compile, words
+from support.avr import IdealArray as Array
 from tilenca.base.errors import TilencaError
-from tilenca.emulator import Array
 
 
 def test_an_eeprom_write_takes_its_time_and_lasts(avr: Compile) -> None:
@@ -78,7 +78,7 @@ def test_the_adc_converts_every_channel_in_its_time(avr: Compile) -> None:
             'asm volatile("ldi r30, 0\\n out 0x3C, r30\\n ldi r31, 0x80\\n ijmp" ::: "r30", "r31");',
             "ran into erased",
         ),
-        ('EIND = 3; asm volatile("eijmp");', "ran off the end of flash"),
+        ('asm volatile(".word 0x941c, 0x0000");', "ran off the end of flash"),  # jmp 0x40000
     ],
 )
 def test_a_program_that_leaves_the_road_stops_with_tile_place_and_fact(

@@ -13,12 +13,13 @@ import pytest
 
 from support.emulate import emulate, report
 
-SECONDS = ("--seconds", "3", "--boot-spread", "0", "--period-ms", "100")
+AT_ONCE = ("--boot-spread", "0", "--bootloader", "none")
+SECONDS = ("--seconds", "3", "--period-ms", "100", *AT_ONCE)
 
 
 def test_waveforms_of_chosen_pins_are_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = tmp_path / "waves.vcd"
-    report(capsys, "--seconds", "0.5", "--boot-spread", "0", "--vcd", path, "--pin", "2:K7", "--pin", "3:PH1")
+    report(capsys, "--seconds", "0.5", *AT_ONCE, "--vcd", path, "--pin", "2:K7", "--pin", "3:PH1")
     text = path.read_text()
     assert "$scope module tile2 $end\n$var wire 1 ! PK7 $end" in text
     assert '$scope module tile3 $end\n$var wire 1 " PH1 $end' in text

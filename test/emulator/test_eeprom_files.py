@@ -61,7 +61,9 @@ def test_an_eeprom_outlives_the_run(capsys: pytest.CaptureFixture[str], tmp_path
     assert files == [f"tile-0{n}.eeprom" for n in range(1, 6)]
     assert all((directory / name).stat().st_size == 4096 for name in files)
     # The period of the first run is still there.
-    slow = report(capsys, "--seconds", "3", "--boot-spread", "0", "--eeprom", directory)
+    slow = report(
+        capsys, "--seconds", "3", "--boot-spread", "0", "--bootloader", "none", "--eeprom", directory
+    )
     assert all(tile["updates"] in (11, 12) for tile in slow["tiles"])
     (directory / "tile-03.eeprom").write_bytes(b"short")
     status, _, err = emulate(capsys, "--eeprom", directory)

@@ -18,7 +18,8 @@ def received(document: dict[str, Any]) -> list[int]:
     return [tile["frames"]["received"] for tile in document["tiles"]]
 
 
-SECONDS = ("--seconds", "3", "--boot-spread", "0", "--period-ms", "100")
+AT_ONCE = ("--boot-spread", "0", "--bootloader", "none")
+SECONDS = ("--seconds", "3", "--period-ms", "100", *AT_ONCE)
 
 
 def test_a_loss_of_all_bytes_in_one_direction_leaves_the_other(capsys: pytest.CaptureFixture[str]) -> None:
@@ -52,16 +53,12 @@ def test_a_tile_without_power_is_not_asked_for(capsys: pytest.CaptureFixture[str
 
 
 def test_a_tile_that_is_switched_on_again_counts_from_there(capsys: pytest.CaptureFixture[str]) -> None:
-    document = report(
-        capsys, "--updates", "20", "--period-ms", "100", "--boot-spread", "0", "--fault", "off@3:1-1.5"
-    )
+    document = report(capsys, "--updates", "20", "--period-ms", "100", *AT_ONCE, "--fault", "off@3:1-1.5")
     assert document["all_right"]
     assert document["tiles"][2]["updates"] in (20, 21)
     assert document["simulated_s"] == pytest.approx(3.65, abs=0.1)
     assert 0 < document["agreed_at_update"] <= 20
-    again = report(
-        capsys, "--updates", "20", "--period-ms", "100", "--boot-spread", "0", "--fault", "reset@3:1.5"
-    )
+    again = report(capsys, "--updates", "20", "--period-ms", "100", *AT_ONCE, "--fault", "reset@3:1.5")
     assert again["simulated_s"] == pytest.approx(3.65, abs=0.1)
 
 
@@ -73,7 +70,7 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(
     for threads, seed in ((1, 3), (2, 3), (2, 4)):
         record = tmp_path / f"{threads}-{seed}.jsonl"
         options = ("--threads", threads, "--seed", seed, "--fault", fault, "--record", record)
-        documents.append(report(capsys, "--seconds", "1.5", *options))
+        documents.append(report(capsys, "--seconds", "1.5", "--bootloader", "none", *options))
         records.append(record.read_text())
     assert documents[0] == documents[1]
     assert records[0] == records[1]

@@ -5,9 +5,10 @@ from itertools import pairwise
 import pytest
 
 from support.avr import Compile, words
+from support.avr import IdealArray as Array
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
-from tilenca.emulator import Array, EmulatedTile, LinkFault
+from tilenca.emulator import EmulatedTile, LinkFault
 
 # Sends a byte a millisecond to the east, counting up, and keeps what comes from the west.
 TALKER = """
@@ -23,7 +24,7 @@ int main(void) {
 
 
 def pair(elf: object, **options: object) -> Array:
-    return Array(str(elf), 2, [(0, EAST, 1, WEST)], **options)  # type: ignore[arg-type]
+    return Array(str(elf), 2, [(0, EAST, 1, WEST)], **options)
 
 
 def heard(tile: EmulatedTile) -> list[int]:

@@ -5,7 +5,8 @@ from itertools import pairwise
 import pytest
 
 from support.avr import Compile, words
-from tilenca.emulator import Array, EmulatedTile
+from support.avr import IdealArray as Array
+from tilenca.emulator import EmulatedTile
 
 
 def run(elf: object, seconds: float = 0.01) -> EmulatedTile:

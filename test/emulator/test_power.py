@@ -3,7 +3,8 @@
 import pytest
 
 from support.avr import Compile, words
-from tilenca.emulator import Array, ResetCause
+from support.avr import IdealArray as Array
+from tilenca.emulator import ResetCause
 
 # Sleeps in MODE while timer 1 counts cycles; a pin change on PK7 wakes it.
 SLEEPER = """
@@ -96,6 +97,22 @@ def test_noise_reduction_sleep_starts_a_conversion_that_ends_it(avr: Compile) ->
     array.run(0.001)
     assert words(array[0].read_memory(0x1000, 2)) == [345]
     assert array[0].read_memory(0x1002, 1) == b"\x01"
+
+
+def test_what_power_reduction_has_stopped_cannot_be_written(avr: Compile) -> None:
+    source = """
+    int main(void) {
+        OCR1A = 5; ADMUX = 3; UBRR2 = 7; SPCR = 1; TWCR = 0x41;
+        PRR0 = 0xEF; PRR1 = 0x3F;
+        OCR1A = 6; ADMUX = 4; UBRR2 = 8; SPCR = 2; TWCR = 0; TCCR3A = 0xFF;
+        PRR0 = 0; PRR1 = 0;
+        result[0] = OCR1A; result[1] = ADMUX; result[2] = UBRR2; result[3] = SPCR; result[4] = TWCR;
+        result[5] = TCCR3A; TCCR3A = 0xFF; result[6] = TCCR3A;
+        for (;;) { }
+    }"""
+    array = Array(avr(source))
+    array.run(0.001)
+    assert array[0].read_memory(0x1000, 7) == bytes([5, 3, 7, 1, 0x41, 0, 0xFF])
 
 
 def test_power_reduction_stops_what_it_names(avr: Compile) -> None:

@@ -5,8 +5,8 @@ from itertools import pairwise
 import pytest
 
 from support.avr import Compile, words
+from support.avr import IdealArray as Array
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
-from tilenca.emulator import Array
 
 SERIAL = """
 static inline void open0(uint16_t ubrr) { UCSR0A = 2; UBRR0 = ubrr; UCSR0C = 6; UCSR0B = 0x18; }
@@ -183,7 +183,7 @@ def test_the_south_link_carries_real_waveforms_both_ways(avr: Compile, ppm: floa
     assert gaps == pytest.approx([416 * (1 + 2 * ppm * 1e-6)] * 9, abs=4)  # in the receiver's own cycles
 
 
-def test_an_input_nobody_drives_reads_high(avr: Compile) -> None:
+def test_an_ideal_input_nobody_drives_reads_high(avr: Compile) -> None:
     source = (
         "int main(void) { result[0] = PINK; result[1] = PINH; PORTK = 0xFF; result[2] = PINK; for (;;) { } }"
     )

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from support.avr import Compile
+from support.avr import IdealArray as Array
 from tilenca.base import paths
-from tilenca.emulator import Array, translation
+from tilenca.emulator import translation
 from tilenca.emulator.translation import SETTING, folder, path_of
 from tilenca.emulator.translator import make
 

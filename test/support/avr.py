@@ -9,13 +9,14 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from support.alone import alone
 from support.conversation import Talk
 from tilenca.base.paths import BUILD, FIRMWARE_ELF
-from tilenca.emulator import Array
+from tilenca.emulator import IDEAL, Array
 from tilenca.protocol.settings import settings_block
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,6 +24,13 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILT = BUILD / "test"
 
 Compile = Callable[..., Path]
+
+
+class IdealArray(Array):
+    """Chips on ideal boards, for tests of the chip: inputs that nobody drives read high, SRAM is empty."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **{"hardware": IDEAL, **options})
 
 
 def run_tool(*command: str | Path) -> str:

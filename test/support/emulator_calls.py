@@ -31,6 +31,15 @@ class World:
             for field in FAULT_FIELDS
             for value in (-1.0, 1e10, *NO_NUMBERS)
         ]
+        # The array has a cable already, so that even ideal hardware comes too late.
+        self.hardware = [
+            self.ffi.new("tilenca_hardware*", values)
+            for values in (
+                {},
+                *({"watchdog_error": value} for value in (-0.1, 0.6, *NO_NUMBERS)),
+                *({"unpowered": value} for value in (-1, 4)),
+            )
+        ]
 
 
 # Calls without the array and the tile that come first, by function; all are right as they stand.
@@ -129,6 +138,7 @@ def other_bad_calls(w: World) -> dict[str, list[tuple[Any, ...]]]:
             *[(a, x, 0.0) for x in NO_NUMBERS],
             *[(a, 0.0, x) for x in NO_NUMBERS],
         ],
+        "array_set_hardware": [(null, w.hardware[0]), (a, null), *[(a, one) for one in w.hardware]],
         "array_set_cable_delay": [(null, 68e-6), *[(a, x) for x in (0, 19e-6, 261e-6, *NO_NUMBERS)]],
         "array_count_instructions": [(null,)],
         "array_translated": [(null,), (a,)],

@@ -2,7 +2,7 @@
 import { TileArray } from "./array.js";
 import { Module } from "./module.js";
 
-const ABI_VERSION = 1; // TILENCA_EMULATOR_ABI_VERSION
+const ABI_VERSION = 2; // TILENCA_EMULATOR_ABI_VERSION
 // As array.js and tile.js write and read them, in bytes.
 const STRUCTURES = { tilenca_wire_fault: 32, tilenca_wire_counts: 24, tilenca_cycles: 24 };
 

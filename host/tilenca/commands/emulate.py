@@ -15,6 +15,7 @@ from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.faults import KINDS
 from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.hardware import UNPOWERED
 from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.fleet.recording import Recorder
@@ -118,7 +119,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     look.add_argument(
         "--serve", type=Path, metavar="DIR", help="give each tile's USB serial as DIR/tile-01, ..."
     )
-    add("--bootloader", metavar="F", help="with --serve: image of the boot section, or none (the stock one)")
+    add(
+        "--bootloader",
+        metavar="F",
+        help="image of the boot section, where tiles start as on every board, or none (the stock one)",
+    )
+    add(
+        "--unpowered",
+        choices=UNPOWERED,
+        default=UNPOWERED[0],
+        help="what a tile without power does to its neighbours' inputs (low)",
+    )
     add("--keep-running", action="store_true", help="with --serve: opening a port does not reset its tile")
 
 
@@ -140,7 +151,8 @@ def run(args: argparse.Namespace) -> int:
         ppm=args.ppm,
         boot_spread_s=args.boot_spread,
         seed=args.seed,
-        bootloader=None if args.serve is None else _bootloader(args.bootloader),
+        bootloader=_bootloader(args.bootloader),
+        unpowered=args.unpowered,
         faults=tuple(args.fault),
         threads=args.threads,
         eeprom=args.eeprom,
@@ -186,9 +198,8 @@ def _check_combinations(args: argparse.Namespace) -> None:
             raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")
     if args.pin and args.vcd is None:
         raise UsageError("--pin does nothing without --vcd; add --vcd FILE or leave it out")
-    for option, given in (("--bootloader", args.bootloader), ("--keep-running", args.keep_running or None)):
-        if not serving and given is not None:
-            raise UsageError(f"{option} does nothing without --serve; add --serve DIR or leave it out")
+    if args.keep_running and not serving:
+        raise UsageError("--keep-running does nothing without --serve; add --serve DIR or leave it out")
 
 
 def _check_readable(image: Path, remedy: str) -> None:
@@ -204,7 +215,10 @@ def _check_readable(image: Path, remedy: str) -> None:
 
 def _bootloader(given: str | None) -> Path | None:
     if given is None:
-        return STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
+        if not STOCK_BOOTLOADER.exists():
+            warn(f"tilenca: no {STOCK_BOOTLOADER}, so tiles have no bootloader; `make setup` installs it")
+            return None
+        return STOCK_BOOTLOADER
     if given == NO_BOOTLOADER:
         return None
     _check_readable(Path(given), f"give --bootloader an ELF or Intel HEX file, or {NO_BOOTLOADER}")

@@ -16,13 +16,14 @@ docs/EMULATOR.md has more examples, and says what of the chip is modelled.
 
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator.array import Array, FaultCounts, Link, LinkFault
+from tilenca.emulator.hardware import IDEAL, Hardware
 from tilenca.emulator.library import LIBRARY
 from tilenca.emulator.probe import Edge, PinProbe, Waveforms, WireByte, WireFrame, WireTap
 from tilenca.emulator.tile import EEPROM_BYTES, EmulatedTile
 from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
 
 __all__ = [
-    "EAST", "EEPROM_BYTES", "LIBRARY", "NORTH", "SOUTH", "WEST", "Array", "DisplayChange", "Edge",
-    "EmulatedTile", "FaultCounts", "Link", "LinkFault", "Mark", "PinProbe", "ResetCause", "Stack",
+    "EAST", "EEPROM_BYTES", "IDEAL", "LIBRARY", "NORTH", "SOUTH", "WEST", "Array", "DisplayChange", "Edge",
+    "EmulatedTile", "FaultCounts", "Hardware", "Link", "LinkFault", "Mark", "PinProbe", "ResetCause", "Stack",
     "Waveforms", "WireByte", "WireFrame", "WireTap",
 ]  # fmt: skip

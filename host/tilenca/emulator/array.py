@@ -9,6 +9,7 @@ from typing import Any
 
 from tilenca.base.errors import TilencaError, UsageError, image_error
 from tilenca.base.sides import SIDES
+from tilenca.emulator.hardware import USUAL, Hardware
 from tilenca.emulator.library import call, library, new, text
 from tilenca.emulator.tile import DATA_SPACE, EmulatedTile
 from tilenca.emulator.translation import Translator
@@ -61,6 +62,7 @@ class Array:
         threads: int = 1,
         cable_delay_s: float = CABLE_DELAY_S,
         translated: bool = True,
+        hardware: Hardware = USUAL,
     ) -> None:
         """Builds the tiles; nothing runs yet.
 
@@ -75,11 +77,12 @@ class Array:
             cable_delay_s: seconds from a pin to the pin at the other end of a cable, 20e-6 to 260e-6; the
                 longer, the less time the emulation takes.
             translated: whether to use a translation of the image, if there is one; it changes nothing else.
+            hardware: how far the boards differ from ideal ones; `IDEAL` are.
 
         Raises:
             BuildError: the emulator is not built.
             BuildError, UsageError: an image cannot be read or is for another chip; see `image_error`.
-            UsageError: the lists do not fit the number of tiles, or the delay is out of range.
+            UsageError: the lists do not fit the number of tiles, or another number is out of range.
         """
         self._handle: Any = None
         ppm, switch_on_s = list(ppm or [0.0] * tiles), list(switch_on_s or [0.0] * tiles)
@@ -94,6 +97,7 @@ class Array:
             self._handle = call("array_new", path, boot, tiles, ppm, switch_on_s)
         except UsageError as error:
             raise image_error(str(error)) from None
+        hardware.apply(self._handle, bootloader is not None)
         call("array_set_cable_delay", self._handle, cable_delay_s)
         self._translator = Translator(Path(image), translated)
         self._translator.use(self._handle)
@@ -146,7 +150,7 @@ class Array:
         call("array_unlink", self.handle, tile, side)
 
     def cut(self, tile: int, side: int) -> None:
-        """Cuts the cable at a side: nothing gets through any more, and both ends read high."""
+        """Cuts the cable at a side: nothing gets through any more, and nobody drives its ends."""
         self._check_end(tile, side)
         call("array_connect", self.handle, tile, side, False)
 

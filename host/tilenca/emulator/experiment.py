@@ -5,7 +5,7 @@
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +13,10 @@ from tilenca.base.errors import TilencaError, image_error
 from tilenca.emulator.array import Array
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.faults import Faults, FaultSpec
+from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.tile import EmulatedTile
 from tilenca.emulator.types import port_name
+from tilenca.emulator.voice import Voice
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
 from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
@@ -30,6 +32,9 @@ PATIENCE = 1.5
 PATIENCE_S = 3.0
 # An update's sentence follows the display within this time; the next update comes later.
 TELLING_MS = 5.0
+# The stock bootloader gives way to the program after a second without a byte; see docs/EMULATOR.md.
+BOOTLOADER_S = 1.5
+BYTE_S = 10 / 115200
 FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
@@ -44,7 +49,8 @@ class EmulationSettings:
         ppm: clock errors are uniform in -ppm..ppm.
         boot_spread_s: tiles are switched on at times uniform in 0..boot_spread_s.
         seed: of both; each shape draws its own.
-        bootloader: image that tiles start in; None: none.
+        bootloader: image that tiles start in; None: none, and programs begin as soon as there is power.
+        unpowered: what a tile without power does to its neighbours' inputs; see `Hardware`.
         faults: to inject.
         threads: how many share the work; they change nothing else.
         eeprom: directory with an EEPROM's contents for each tile that has a file there; None: none.
@@ -57,18 +63,10 @@ class EmulationSettings:
     boot_spread_s: float = 1.0
     seed: int = 0
     bootloader: Path | None = None
+    unpowered: str = "low"
     faults: tuple[FaultSpec, ...] = ()
     threads: int = 1
     eeprom: Path | None = None
-
-
-@dataclass
-class _Voice:
-    """The sentences of one tile so far."""
-
-    reader: LineReader = field(default_factory=LineReader)
-    reports: list[TileSentence] = field(default_factory=list)
-    links: dict[str, LinkSentence] = field(default_factory=dict)
 
 
 def firmware_settings(elf: Path) -> Settings | None:
@@ -122,14 +120,16 @@ class Emulation:
         self.ppm = [draw.uniform(-settings.ppm, settings.ppm) for _ in range(count)]
         self.switch_on_s = [draw.uniform(0.0, settings.boot_spread_s) for _ in range(count)]
         self.cables = links = cables(shape)
+        hardware = Hardware(draw.getrandbits(63), unpowered=settings.unpowered)
         self.array = Array(
-            elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads
-        )
+            elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads,
+            hardware=hardware,
+        )  # fmt: skip
         self._faults = Faults(self.array, links, settings.seed)
         for spec in settings.faults:
             self._faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
-        self._voices = [_Voice() for _ in range(count)]
+        self._voices = [Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # the firmware's own greeting, the same from every tile
         for tile in self.array:
             kept = settings.eeprom and load_eeprom(tile, settings.eeprom)
@@ -153,7 +153,7 @@ class Emulation:
             TilencaError: a tile stopped at a fault of its program.
         """
         for tile in self._faults.run(seconds):
-            self._voices[tile].reports.clear()  # its sentences before the reset no longer count
+            self._voices[tile].restart()  # its sentences before the reset no longer count
             self.switch_on_s[tile] = self._faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
@@ -163,12 +163,14 @@ class Emulation:
             for time_s, value in tile.read_serial_timed():
                 for raw, sentence in voice.reader.feed(bytes([value])):
                     heard.append(Heard(time_s, port_name(tile.index), raw, sentence))
-                    self._note(voice, heard[-1])
+                    self._note(tile.index, heard[-1])
         return sorted(heard, key=lambda line: (line.time_s, line.port))
 
-    def _note(self, voice: _Voice, heard: Heard) -> None:
+    def _note(self, tile: int, heard: Heard) -> None:
+        voice = self._voices[tile]
         if isinstance(heard.sentence, TileSentence):
-            voice.reports.append(heard.sentence)
+            said_s = heard.time_s - len(heard.raw) * BYTE_S
+            voice.note(heard.sentence, said_s, 1 + self.ppm[tile] * 1e-6)
         elif isinstance(heard.sentence, LinkSentence):
             voice.links[heard.sentence.side] = heard.sentence
         elif isinstance(heard.sentence, HelloSentence):
@@ -206,7 +208,8 @@ class Emulation:
         if self.settings.seconds is not None:
             return float("inf")
         expected_s = self.settings.updates * (self.period_ms or 0) / 1000
-        return self.settings.boot_spread_s + PATIENCE * expected_s + PATIENCE_S
+        boot_s = self.settings.boot_spread_s + (BOOTLOADER_S if self.settings.bootloader else 0.0)
+        return boot_s + PATIENCE * expected_s + PATIENCE_S
 
     def _standing(self) -> list[int]:
         """The tiles that have power; the others do not count."""
@@ -236,6 +239,18 @@ class Emulation:
 
     def agreed_at_s(self) -> float | None:
         """Time from the last switch-on until all tiles stay right; None if they do not."""
+        moment_s = self._agreed_moment_s()
+        return None if moment_s is None else moment_s - max(self.switch_on_s)
+
+    def agreed_after_update_s(self) -> float | None:
+        """Time from the first update of the last tile until all tiles stay right; None if they do not."""
+        moment_s = self._agreed_moment_s()
+        first_s = [self._voices[index].first_update_s for index in self._standing()]
+        if moment_s is None or None in first_s:
+            return None
+        return max(0.0, moment_s - max(time_s for time_s in first_s if time_s is not None))
+
+    def _agreed_moment_s(self) -> float | None:
         if not self.all_right:
             return None
         since = []
@@ -248,20 +263,18 @@ class Emulation:
                     right_from_s = change.time_s
                 was_right = right
             since.append(right_from_s)
-        return max(since) - max(self.switch_on_s)
+        return max(since)
 
     def agreed_at_update(self) -> int | None:
         """The updates of the least advanced tile when all agreed; None if they do not."""
-        agreed_s = self.agreed_at_s()
-        if agreed_s is None:
+        moment_s = self._agreed_moment_s()
+        if moment_s is None:
             return None
-        moment_s = agreed_s + max(self.switch_on_s)
         done = []
         for index in self._standing():
             voice = self._voices[index]
-            uptime_ms = (moment_s - self.switch_on_s[index]) * 1000 * (
-                1 + self.ppm[index] * 1e-6
-            ) + TELLING_MS
+            started_s = moment_s if voice.started_s is None else voice.started_s
+            uptime_ms = (moment_s - started_s) * 1000 * (1 + self.ppm[index] * 1e-6) + TELLING_MS
             done.append(
                 max((report.updates for report in voice.reports if report.uptime_ms <= uptime_ms), default=0)
             )
@@ -269,7 +282,7 @@ class Emulation:
 
     def report(self, wall_s: float) -> dict[str, Any]:
         """The JSON document of one shape."""
-        agreed_s = self.agreed_at_s()
+        agreed_s, after_update_s = self.agreed_at_s(), self.agreed_after_update_s()
         return {
             "shape": self.shape.name,
             "model_id": self.hello and f"{self.hello.model_id:04X}",
@@ -279,6 +292,7 @@ class Emulation:
             "tiles": [self._tile_report(tile) for tile in self.array],
             "all_right": self.all_right,
             "agreed_at_s": None if agreed_s is None else round(agreed_s, 6),
+            "agreed_after_first_update_s": None if after_update_s is None else round(after_update_s, 6),
             "agreed_at_update": self.agreed_at_update(),
         }
 

@@ -167,9 +167,9 @@ class EmulatedTile:
         """Share of time (0..1) an output is high under its timer's PWM; 0 for an input."""
         return float(self._call("tile_duty", pin_port(port), bit))
 
-    def hold_pin(self, port: str, bit: int, level: bool) -> None:
-        """Drives an input from outside; an input that nobody drives reads high."""
-        self._call("tile_hold_pin", pin_port(port), bit, level)
+    def hold_pin(self, port: str, bit: int, level: bool | None) -> None:
+        """Drives an input from outside, whatever a cable does to it; with None, it lets go."""
+        self._call("tile_hold_pin", pin_port(port), bit, -1 if level is None else level)
 
     def set_analog(self, channel: int, value: int) -> None:
         """What analog input A0 to A15 converts to, 0..1023."""
@@ -184,11 +184,14 @@ class EmulatedTile:
         self._call("tile_set_comparator", ain0, ain1)
 
     def set_spi_loopback(self, on: bool = True) -> None:
-        """Joins MOSI and MISO; without it, MISO reads as the pin PB3 does: high, if nobody holds it."""
+        """Joins MOSI and MISO; without it, MISO reads as the pin PB3 does."""
         self._call("tile_set_spi_loopback", on)
 
     def push_edge(self, port: str, bit: int, cycle: int, level: bool) -> None:
-        """Lets an input change at a future cycle of the tile's own clock; not for pins that a link drives."""
+        """Lets an input change at a future cycle of the tile's own clock; not for pins that a link drives.
+
+        From the first call on somebody drives the pin; it is high before that change.
+        """
         self._call("tile_push_edge", pin_port(port), bit, cycle, level)
 
     def write_memory(self, address: int, data: bytes) -> None:

@@ -15,12 +15,13 @@ def verdict(emulation: Emulation) -> str:
     """One line: whether the tiles are right, and since when."""
     name, standing = emulation.shape.name, [tile for tile in emulation.array if tile.powered]
     count = len(standing)
-    agreed_s = emulation.agreed_at_s()
+    agreed_s, after_update_s = emulation.agreed_at_s(), emulation.agreed_after_update_s()
     if agreed_s is not None:
+        updated = "" if after_update_s is None else f", {after_update_s:.2f} s after its first update"
         tiles = "the tile shows" if count == 1 else f"all {count} tiles show"
         return (
-            f"{name}: {tiles} {emulation.shape.label}, since {agreed_s:.2f} s after the last was switched on "
-            f"(update {emulation.agreed_at_update()})"
+            f"{name}: {tiles} {emulation.shape.label}, since {agreed_s:.2f} s after the last was switched on"
+            f"{updated} (update {emulation.agreed_at_update()})"
         )
     wrong = [
         f"tile {tile.index + 1} {emulation.shown(tile) or 'nothing'}"

@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 // Grows with every change after which callers must be compiled or written anew.
-enum { TILENCA_EMULATOR_ABI_VERSION = 1 };
+enum { TILENCA_EMULATOR_ABI_VERSION = 2 };
 
 typedef struct tilenca_array tilenca_array;
 
@@ -52,6 +52,20 @@ typedef struct tilenca_stack {
     uint32_t floor;   // the lowest it may
 } tilenca_stack;
 
+// What a tile without power does to the inputs of its neighbours: its pins load the wires.
+enum { TILENCA_PULLS_LOW, TILENCA_PULLS_TO_THE_MIDDLE, TILENCA_PULLS_HIGH, TILENCA_LEAVES_OPEN };
+
+// How far tiles differ from ideal ones.
+typedef struct tilenca_hardware {
+    uint64_t seed;         // decides all that is left to chance below; each tile draws its own
+    double watchdog_error; // the watchdog's clock is off by a share of up to so much, 0..0.5
+    int floating_inputs;   // an input that neither its pull-up nor anybody outside drives reads 1: noise; 0:
+                           // high
+    int sram_noise;        // at power-on SRAM and registers hold 1: noise; 0: zeros
+    int start_up;          // a program begins 1: after the start-up time that the fuses say; 0: at once
+    int unpowered;         // of the enumeration above
+} tilenca_hardware;
+
 // Bit of MCUSR that a reset sets.
 enum { TILENCA_RESET_EXTERNAL = 2, TILENCA_RESET_BROWN_OUT = 4 };
 
@@ -82,6 +96,9 @@ TILENCA_API int tilenca_array_remove_tile(tilenca_array* array, unsigned tile);
 // How long a cable takes, 20 us to 260 us (usually the most); before the array runs. Tiles run in turns that
 // are a little shorter: longer ones cost less. A snapshot brings its own along.
 TILENCA_API int tilenca_array_set_cable_delay(tilenca_array* array, double seconds);
+// Before cables are laid and the array runs; without this call all is ideal, and a tile without power pulls
+// high.
+TILENCA_API int tilenca_array_set_hardware(tilenca_array* array, const tilenca_hardware* hardware);
 // How many threads share the work, 1 to 1024. They change how long it takes, and nothing else.
 TILENCA_API int tilenca_array_set_threads(tilenca_array* array, unsigned threads);
 // Runs all tiles, in steps of 16 us; returns how many stand still after a fault. Ends early where a tile
@@ -167,10 +184,12 @@ TILENCA_API ptrdiff_t tilenca_tile_receive(tilenca_array* array, unsigned tile, 
 TILENCA_API int tilenca_tile_pin(tilenca_array* array, unsigned tile, char port, unsigned bit);
 // The share of time (0..1) an output is high under its timer's PWM; 0 for an input.
 TILENCA_API double tilenca_tile_duty(tilenca_array* array, unsigned tile, char port, unsigned bit);
-// Drives an input from outside.
+// Drives an input from outside: 0 or 1; below 0: lets it go. A pin with a cable hears nothing of it
+// meanwhile.
 TILENCA_API int tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit,
                                       int level);
-// A change of an input's level ahead of time, at a cycle of the tile's clock.
+// A change of an input's level ahead of time, at a cycle of the tile's clock. From the first call on the pin
+// is driven, and high before that change.
 TILENCA_API int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsigned bit,
                                        uint64_t cycle, int level);
 // What an analog channel, 0 to 15, converts to: 0 to 1023.

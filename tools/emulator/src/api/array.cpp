@@ -10,6 +10,7 @@ namespace {
 
 constexpr unsigned kMostThreads = 1024;
 constexpr double kLongestRunS = 1e9;
+constexpr double kMostWatchdogError = 0.5;
 
 tilenca::avr::Fuses fuses_of(const tilenca::Image& image, bool with_bootloader) {
     using tilenca::avr::Fuses;
@@ -80,6 +81,22 @@ int tilenca_array_set_cable_delay(tilenca_array* array, double seconds) {
                     tilenca::kMostDelayTicks);
         if (!array_of(array).set_cable_delay(ticks)) {
             throw Refusal("cables keep their delay once the array runs");
+        }
+    });
+}
+
+int tilenca_array_set_hardware(tilenca_array* array, const tilenca_hardware* hardware) {
+    return attempted([&] {
+        const tilenca_hardware& given = present(hardware, "the hardware");
+        check_range("the watchdog's error", given.watchdog_error, 0.0, kMostWatchdogError);
+        check_range("what a tile without power does", given.unpowered, int{TILENCA_PULLS_LOW},
+                    int{TILENCA_LEAVES_OPEN});
+        constexpr tilenca::avr::Drive kDrives[] = {tilenca::avr::Drive::Low, tilenca::avr::Drive::Middle,
+                                                   tilenca::avr::Drive::High, tilenca::avr::Drive::Open};
+        const tilenca::avr::Hardware wanted{given.seed, given.floating_inputs != 0, given.sram_noise != 0,
+                                            given.start_up != 0, given.watchdog_error};
+        if (!array_of(array).set_hardware(wanted, kDrives[given.unpowered])) {
+            throw Refusal("tiles keep their hardware once they have cables or run");
         }
     });
 }

@@ -48,7 +48,8 @@ int tilenca_emulator_abi_version(void) {
 size_t tilenca_emulator_size_of(const char* structure) {
     using tilenca::c_api::Size;
     const Size all[] = {TILENCA_SIZE(tilenca_wire_fault), TILENCA_SIZE(tilenca_wire_counts),
-                        TILENCA_SIZE(tilenca_cycles), TILENCA_SIZE(tilenca_stack)};
+                        TILENCA_SIZE(tilenca_cycles), TILENCA_SIZE(tilenca_stack),
+                        TILENCA_SIZE(tilenca_hardware)};
     return tilenca::c_api::size_among(all, structure);
 }
 

@@ -17,7 +17,8 @@ double tilenca_tile_duty(tilenca_array* array, unsigned tile, char port, unsigne
 int tilenca_tile_hold_pin(tilenca_array* array, unsigned tile, char port, unsigned bit, int level) {
     return attempted([&] {
         auto& chip = tile_of(array, tile).chip();
-        chip.gpio().hold_input(pin_of(port, bit), level != 0, chip.cpu().cycle);
+        const std::optional<bool> wanted = level < 0 ? std::nullopt : std::optional<bool>(level != 0);
+        chip.gpio().hold_input(pin_of(port, bit), wanted, chip.cpu().cycle);
     });
 }
 
@@ -26,10 +27,15 @@ int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsig
     return attempted([&] {
         auto& chip = tile_of(array, tile).chip();
         const tilenca::avr::PinId pin = pin_of(port, bit);
-        if (chip.gpio().line(pin) == nullptr) {
-            chip.gpio().attach_line(pin);
+        tilenca::avr::Line* line = chip.gpio().line(pin);
+        if (line == nullptr) {
+            line = &chip.gpio().attach_line(pin, tilenca::avr::Drive::High);
         }
-        chip.push_edge(pin, cycle, level != 0);
+        if (line->edges() == 0 &&
+            !is_driven(line->drive_at(chip.cpu().cycle))) { // from now on somebody drives it
+            chip.push_edge(pin, chip.cpu().cycle, tilenca::avr::Drive::High);
+        }
+        chip.push_edge(pin, cycle, tilenca::avr::drive_of(level != 0));
     });
 }
 

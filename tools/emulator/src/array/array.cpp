@@ -27,6 +27,7 @@ Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Cloc
 
 unsigned Array::add_tile(const Clock& clock) {
     tiles_.push_back(std::make_unique<Tile>(program_, fuses_, clock, data_end_));
+    tiles_.back()->set_hardware(hardware_of(size() - 1));
     for (const Block& block : image_.eeprom) {
         std::copy(block.bytes.begin(), block.bytes.end(),
                   tiles_.back()->chip().eeprom().memory().begin() + block.address);
@@ -38,7 +39,7 @@ unsigned Array::add_tile(const Clock& clock) {
 // --- cables ---
 
 void Array::connect(End from, End to) {
-    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, delay_, writing_));
+    wires_.push_back(std::make_unique<Wire>(tile(from.tile), tile(to.tile), from, to, common_, now_));
 }
 
 void Array::rebuild_order() {
@@ -87,12 +88,13 @@ bool Array::unlink(End end) {
         return false;
     }
     Wire* back = wire_from(there->to());
-    for (Wire* wire : {there, back}) { // what is on its way is lost, and the line goes to rest
+    for (Wire* wire : {there, back}) { // what is on its way is lost, and the line is open
         if (wire == nullptr) {
             continue;
         }
         Tile& to = tile(wire->to().tile);
-        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + delay_), true);
+        to.chip().push_edge(Tile::receive_pin(wire->to().side), to.clock().to_cycle(now_ + common_.delay),
+                            avr::Drive::Open);
     }
     wires_.erase(std::remove_if(wires_.begin(), wires_.end(),
                                 [&](const auto& wire) { return wire.get() == there || wire.get() == back; }),
@@ -103,6 +105,9 @@ bool Array::unlink(End end) {
 
 void Array::set_power(unsigned index, bool on) {
     tile(index).set_power(on);
+    for (Wire* wire : out_of_[index]) {
+        wire->power_changed(now_);
+    }
 }
 
 void Array::remove_tile(unsigned index) {
@@ -114,11 +119,32 @@ void Array::remove_tile(unsigned index) {
 
 // --- time ---
 
+bool Array::set_hardware(const avr::Hardware& hardware, avr::Drive unpowered) {
+    if (now_ > 0 || !wires_.empty()) {
+        return false;
+    }
+    hardware_ = hardware;
+    common_.unpowered = unpowered;
+    for (unsigned index = 0; index < size(); index++) {
+        tile(index).set_hardware(hardware_of(index));
+    }
+    return true;
+}
+
+// Each tile is another specimen.
+avr::Hardware Array::hardware_of(unsigned index) const {
+    avr::Hardware own = hardware_;
+    avr::Random random(hardware_.seed);
+    own.seed = random.next() + index;
+    own.seed = avr::Random(own.seed).next();
+    return own;
+}
+
 bool Array::set_cable_delay(double ticks) {
     if (now_ > 0) {
         return false;
     }
-    delay_ = ticks;
+    common_.delay = ticks;
     turn_ = turn_of(ticks);
     return true;
 }
@@ -176,7 +202,7 @@ void Array::catch_up() {
 }
 
 void Array::run_turn() {
-    writing_ = 1 - writing_;
+    common_.writing = 1 - common_.writing;
     if (workers_ != nullptr) {
         workers_->share(size());
         return;

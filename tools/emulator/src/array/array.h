@@ -41,7 +41,10 @@ class Array {
 
     // What a cable takes, in ticks; only before time begins. False: it has begun.
     bool set_cable_delay(double ticks);
-    double cable_delay() const { return delay_; }
+    double cable_delay() const { return common_.delay; }
+    // How far the tiles differ from ideal ones, and what one without power does to its neighbours' inputs;
+    // only before time begins, and before cables are laid. False: too late.
+    bool set_hardware(const avr::Hardware& hardware, avr::Drive unpowered);
     // Runs on, in whole quanta; turns lie on a fixed grid, so how a caller cuts time into calls changes
     // nothing. A tile that meets a breakpoint ends it early; the next call goes on from there.
     void run_for(double ticks);
@@ -80,6 +83,7 @@ class Array {
     void catch_up();
     void connect(End from, End to);
     void rebuild_order();
+    avr::Hardware hardware_of(unsigned index) const;
     double idle_until();
     uint32_t image_number() const;
 
@@ -93,9 +97,9 @@ class Array {
     // Until when each tile sleeps, unless something comes in: it need not run, and may lag behind, before.
     std::vector<double> sleeps_until_;
     std::unique_ptr<Workers> workers_;
-    unsigned writing_ = 0; // which of a wire's two lists
+    Wire::Common common_{kUsualDelayTicks};
+    avr::Hardware hardware_;
     double now_ = 0;
-    double delay_ = kUsualDelayTicks;
     double turn_ = turn_of(kUsualDelayTicks);
     double turn_begin_ = 0; // of the time under way, which ends now
     double asked_for_ = 0;

@@ -8,7 +8,7 @@ namespace tilenca {
 namespace {
 
 constexpr uint32_t kMagic = 0x53434C54; // "TLCS"
-constexpr uint32_t kVersion = 2;        // one more whenever any state() changes
+constexpr uint32_t kVersion = 3;        // one more whenever any state() changes
 
 // FNV-1a.
 uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u) {
@@ -38,7 +38,7 @@ std::vector<uint8_t> Array::save() {
         End from = wire->from(), to = wire->to();
         archive(from.tile, from.side, to.tile, to.side);
     }
-    archive(now_, asked_for_, delay_);
+    archive(now_, asked_for_, common_.delay, common_.unpowered, hardware_);
     for (const auto& one : tiles_) {
         archive(*one);
     }
@@ -83,7 +83,7 @@ void Array::load(const uint8_t* bytes, size_t count) {
         ends.emplace_back(from, to);
     }
     wires_.clear();
-    writing_ = 0;
+    common_.writing = 0;
     while (size() > tiles) {
         tiles_.pop_back();
     }
@@ -94,13 +94,13 @@ void Array::load(const uint8_t* bytes, size_t count) {
         connect(from, to);
     }
     rebuild_order();
-    auto delay = delay_;
-    archive(now_, asked_for_, delay);
+    auto delay = common_.delay;
+    archive(now_, asked_for_, delay, common_.unpowered, hardware_);
     if (!(delay >= kLeastDelayTicks && delay <= kMostDelayTicks)) {
         throw avr::ArchiveError("its cables take longer than any can");
     }
-    delay_ = delay;
-    turn_ = turn_of(delay_);
+    common_.delay = delay;
+    turn_ = turn_of(common_.delay);
     for (const auto& one : tiles_) {
         archive(*one);
     }

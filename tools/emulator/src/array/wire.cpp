@@ -4,62 +4,80 @@
 
 namespace tilenca {
 
+using avr::Drive;
+
 namespace {
 
 constexpr double kUnknownBaud = 38400;
 
 } // namespace
 
-Wire::Wire(Tile& from, Tile& to, End from_end, End to_end, const double& delay, const unsigned& writing)
+Wire::Wire(Tile& from, Tile& to, End from_end, End to_end, const Common& common, double now)
     : from_(from), to_(to), from_end_(from_end), to_end_(to_end),
-      from_pin_(Tile::transmit_pin(from_end.side)), to_pin_(Tile::receive_pin(to_end.side)), latency_(delay),
-      writing_(writing) {
+      from_pin_(Tile::transmit_pin(from_end.side)), to_pin_(Tile::receive_pin(to_end.side)), common_(common) {
     if (to_.chip().gpio().line(to_pin_) == nullptr) {
-        to_.chip().gpio().attach_line(to_pin_);
+        to_.chip().gpio().attach_line(to_pin_, Drive::Open);
     }
     from_.chip().gpio().listen(from_pin_, this);
+    drive_anew(now);
 }
 
 Wire::~Wire() {
     from_.chip().gpio().ignore(from_pin_, this);
 }
 
-void Wire::edge(avr::PinId, uint64_t cycle, bool level) {
+void Wire::edge(avr::PinId, uint64_t cycle, bool level, bool open) {
     const double ticks = from_.clock().to_ticks(cycle);
-    if (!connected_) {
+    if (!connected_ || !from_.is_powered()) {
         return;
     }
+    const Drive drive = open ? Drive::Open : avr::drive_of(level);
     if (!fault_.harms()) {
-        sent_[writing_].push_back({ticks + latency_ + fault_.delay, level});
+        put(ticks + common_.delay + fault_.delay, drive);
         return;
     }
     while (!raw_.empty() && raw_.back().ticks >= ticks) {
         raw_.pop_back();
     }
-    raw_.push_back({ticks, level});
+    raw_.push_back({ticks, drive});
 }
 
-// An input at the end of a cable that leads nowhere reads high.
 void Wire::set_connected(bool connected, double now) {
-    if (connected == connected_) {
-        return;
+    if (connected != connected_) {
+        connected_ = connected;
+        drive_anew(now);
     }
-    connected_ = connected;
+}
+
+// Says what the wire is driven like from now on, whatever was on its way. A cable that leads nowhere is open.
+// So is the pin of a tile that has just got its power; until then the tile loads the wire.
+void Wire::drive_anew(double now) {
     raw_.clear();
     border_ = kNoByte;
     muted_ = flipping_ = false;
-    const bool idle = from_.bit_ticks(from_pin_) != 0; // a USART's line, but for the frame that is being sent
-    raw_level_ = out_level_ =
-        !connected || idle || from_.chip().gpio().level(from_pin_, from_.chip().cpu().cycle);
-    sent_[writing_].push_back({now + latency_, out_level_});
+    const bool is_on = from_.is_on(now);
+    Drive drive = Drive::Open;
+    if (connected_) {
+        // A USART's line is idle, but for the frame that is being sent.
+        drive = is_on ? from_.chip().gpio().drive(from_pin_, from_.chip().cpu().cycle) : common_.unpowered;
+    }
+    raw_drive_ = out_drive_ = drive;
+    put(now + common_.delay, drive);
+    if (connected_ && !is_on && from_.is_powered()) {
+        raw_drive_ = out_drive_ = Drive::Open;
+        put(from_.clock().to_ticks(0) + common_.delay, Drive::Open);
+    }
 }
 
 void Wire::set_fault(const WireFault& fault, uint64_t seed) {
+    if (fault.harms() && !fault_.harms() && connected_ && from_.is_powered()) {
+        raw_drive_ = out_drive_ = from_.chip().gpio().drive(from_pin_, from_.chip().cpu().cycle);
+    }
     fault_ = fault;
     random_ = avr::Random(seed);
     if (!fault.harms()) {
         for (const Edge& edge : raw_) {
-            sent_[writing_].push_back({edge.ticks + latency_ + fault.delay, edge.level});
+            put(edge.ticks + common_.delay + fault.delay, edge.drive);
         }
         raw_.clear();
     }
@@ -108,10 +126,13 @@ void Wire::pass_borders(double until) {
 }
 
 void Wire::send(double ticks) {
-    const bool level = muted_ || raw_level_ != flipping_;
-    if (level != out_level_) {
-        out_level_ = level;
-        sent_[writing_].push_back({ticks + latency_ + fault_.delay, level});
+    Drive drive = muted_ ? Drive::High : raw_drive_;
+    if (flipping_ && avr::is_driven(raw_drive_) && !muted_) {
+        drive = avr::drive_of(raw_drive_ == Drive::Low);
+    }
+    if (drive != out_drive_) {
+        out_drive_ = drive;
+        put(ticks + common_.delay + fault_.delay, drive);
     }
 }
 
@@ -119,11 +140,11 @@ void Wire::settle(double end) {
     for (; !raw_.empty() && raw_.front().ticks < end; raw_.pop_front()) {
         const Edge edge = raw_.front();
         pass_borders(edge.ticks);
-        if (edge.level == raw_level_) {
+        if (edge.drive == raw_drive_) {
             continue;
         }
-        raw_level_ = edge.level;
-        if (!edge.level && border_ == kNoByte) {
+        raw_drive_ = edge.drive;
+        if (edge.drive == Drive::Low && border_ == kNoByte) {
             start_byte(edge.ticks);
         }
         send(edge.ticks);
@@ -132,7 +153,7 @@ void Wire::settle(double end) {
 }
 
 double Wire::pending() const {
-    if (!sent_[writing_].empty()) {
+    if (!sent_[common_.writing].empty()) {
         return 0;
     }
     const double border = border_ == kNoByte ? HUGE_VAL : start_ + bit_ * border_;
@@ -140,9 +161,9 @@ double Wire::pending() const {
 }
 
 bool Wire::hand_over() {
-    std::vector<Edge>& edges = sent_[1 - writing_];
+    std::vector<Edge>& edges = sent_[1 - common_.writing];
     for (const Edge& edge : edges) {
-        to_.chip().push_edge(to_pin_, to_.clock().to_cycle(edge.ticks), edge.level);
+        to_.chip().push_edge(to_pin_, to_.clock().to_cycle(edge.ticks), edge.drive);
     }
     edges.clear();
     return true;
@@ -150,9 +171,9 @@ bool Wire::hand_over() {
 
 void Wire::state(avr::Archive& archive) {
     std::vector<Edge> raw(raw_.begin(), raw_.end());
-    archive(sent_[writing_], sent_[1 - writing_], connected_, fault_.loss, fault_.flip, fault_.delay,
-            fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_level_, out_level_,
-            muted_, flipping_, flips_, start_, bit_, border_);
+    archive(sent_[common_.writing], sent_[1 - common_.writing], connected_, fault_.loss, fault_.flip,
+            fault_.delay, fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_drive_,
+            out_drive_, muted_, flipping_, flips_, start_, bit_, border_);
     raw_.assign(raw.begin(), raw.end());
 }
 

@@ -31,8 +31,14 @@ class Wire : public avr::EdgeListener {
         uint64_t bytes = 0, lost = 0, flipped = 0; // bytes seen and lost, bits flipped; only on a faulty wire
     };
 
-    // delay: ticks that everything takes; writing: which of the two lists this turn writes.
-    Wire(Tile& from, Tile& to, End from_end, End to_end, const double& delay, const unsigned& writing);
+    // What the wires of an array have in common.
+    struct Common {
+        double delay = 0;                        // ticks that everything takes
+        unsigned writing = 0;                    // which of a wire's two lists this turn writes
+        avr::Drive unpowered = avr::Drive::High; // what a tile without power does to its neighbours
+    };
+
+    Wire(Tile& from, Tile& to, End from_end, End to_end, const Common& common, double now);
     ~Wire() override;
     Wire(const Wire&) = delete;
     Wire& operator=(const Wire&) = delete;
@@ -44,11 +50,13 @@ class Wire : public avr::EdgeListener {
     void set_fault(const WireFault& fault, uint64_t seed);
     const Counts& counts() const { return counts_; }
 
-    void edge(avr::PinId pin, uint64_t cycle, bool level) override;
+    void edge(avr::PinId pin, uint64_t cycle, bool level, bool open) override;
+    // The sender was switched on or off.
+    void power_changed(double now) { drive_anew(now); }
     // Of the sender's turn: all before `end` is certain.
     void settle(double end);
     // Of the receiver's turn: hands over what was sent before this turn; false: nothing was.
-    bool deliver() { return !sent_[1 - writing_].empty() && hand_over(); }
+    bool deliver() { return !sent_[1 - common_.writing].empty() && hand_over(); }
     // When it next has to be looked at, in ticks: at once, if something waits to be delivered.
     double pending() const;
     bool has_fault() const { return fault_.harms(); }
@@ -57,21 +65,22 @@ class Wire : public avr::EdgeListener {
   private:
     struct Edge {
         double ticks;
-        bool level;
-        void state(avr::Archive& archive) { archive(ticks, level); }
+        avr::Drive drive;
+        void state(avr::Archive& archive) { archive(ticks, drive); }
     };
 
     bool hand_over();
     void start_byte(double ticks);
     void pass_borders(double until);
     void send(double ticks);
+    void put(double ticks, avr::Drive drive) { sent_[common_.writing].push_back({ticks, drive}); }
+    void drive_anew(double now);
     double bit_ticks();
 
     Tile &from_, &to_;
     End from_end_, to_end_;
     avr::PinId from_pin_, to_pin_;
-    const double& latency_;
-    const unsigned& writing_;
+    const Common& common_;
     std::vector<Edge> sent_[2];
     bool connected_ = true;
 
@@ -79,7 +88,7 @@ class Wire : public avr::EdgeListener {
     avr::Random random_;
     Counts counts_;
     std::deque<Edge> raw_; // announced, and not certain yet
-    bool raw_level_ = true, out_level_ = true;
+    avr::Drive raw_drive_ = avr::Drive::Open, out_drive_ = avr::Drive::Open;
     bool muted_ = false, flipping_ = false;
     uint8_t flips_ = 0;
     double start_ = 0, bit_ = 0;

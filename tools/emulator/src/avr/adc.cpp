@@ -19,7 +19,7 @@ constexpr double kBandgap = 225; // 1.1 V of 5 V
 } // namespace
 
 std::vector<uint16_t> Adc::registers() const {
-    return {kAdcl, kAdch, kAdcsra, kAdcsrb};
+    return {kAdcl, kAdch, kAdcsra, kAdcsrb, kAdmux};
 }
 
 std::vector<uint8_t> Adc::vectors() const {
@@ -78,16 +78,23 @@ uint8_t Adc::read(uint16_t address, uint64_t) {
     return byte(address);
 }
 
+bool Adc::reads_as_stored(uint16_t address) const {
+    return address != kAdcl && address != kAdch;
+}
+
 void Adc::write(uint16_t address, uint8_t value, uint64_t cycle) {
     if (address == kAdcl || address == kAdch) {
         return; // to be read only
     }
-    if (address == kAdcsrb) {
-        byte(kAdcsrb) = value;
-    } else {
+    if (address == kAdcsra) {
         write_control(value, cycle);
+    } else {
+        byte(address) = value;
     }
-    trigger_changed_(cycle);
+    if (address == kAdmux) {
+        show_result(); // ADLAR acts at once, on a result that is there, too
+    }
+    setup_changed_(cycle);
 }
 
 void Adc::write_control(uint8_t value, uint64_t cycle) {
@@ -138,10 +145,9 @@ void Adc::on_event(Slot, uint64_t cycle) {
     }
     const int result = is_difference_ ? std::clamp(int(std::floor(value)), -512, 511) & 0x3FF
                                       : std::clamp(int(std::lround(value)), 0, 1023);
-    const auto shown = static_cast<uint16_t>((byte(kAdmux) & kAdlar) != 0 ? result << 6 : result);
     if (!held_) { // else this result is lost
-        byte(kAdcl) = static_cast<uint8_t>(shown);
-        byte(kAdch) = static_cast<uint8_t>(shown >> 8);
+        result_ = static_cast<uint16_t>(result);
+        show_result();
     }
     byte(kAdcsra) |= kAdif;
     if (is_triggered_by(AdcTrigger::FreeRunning)) {
@@ -152,6 +158,12 @@ void Adc::on_event(Slot, uint64_t cycle) {
         core_.schedule.cancel(Slot::Adc);
     }
     update_requests();
+}
+
+void Adc::show_result() {
+    const auto shown = static_cast<uint16_t>((byte(kAdmux) & kAdlar) != 0 ? result_ << 6 : result_);
+    byte(kAdcl) = static_cast<uint8_t>(shown);
+    byte(kAdch) = static_cast<uint8_t>(shown >> 8);
 }
 
 void Adc::interrupt_taken(uint8_t) {
@@ -171,6 +183,7 @@ void Adc::set_noise(double deviation, uint64_t seed) {
 
 void Adc::reset(uint64_t) {
     warm_ = by_trigger_ = held_ = false;
+    result_ = 0;
     core_.schedule.cancel(Slot::Adc);
 }
 
@@ -184,7 +197,7 @@ void Adc::clock_starts(uint64_t, uint64_t stood) {
 }
 
 void Adc::state(Archive& archive) {
-    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, origin_);
+    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, result_, origin_);
 }
 
 } // namespace tilenca::avr

@@ -27,6 +27,7 @@ class Adc : public Peripheral {
 
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
+    bool reads_as_stored(uint16_t address) const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
@@ -40,8 +41,8 @@ class Adc : public Peripheral {
     // Every conversion is off by a normal deviate of this deviation, in units of the result's lowest bit.
     void set_noise(double deviation, uint64_t seed);
 
-    // The event conversions are to be started by; called whenever that may have changed.
-    void on_trigger_changed(std::function<void(uint64_t cycle)> call) { trigger_changed_ = std::move(call); }
+    // Called whenever the event that starts conversions may have changed, or the channel.
+    void on_setup_changed(std::function<void(uint64_t cycle)> call) { setup_changed_ = std::move(call); }
     bool is_triggered_by(AdcTrigger source) const;
     void trigger(AdcTrigger source, uint64_t cycle);
     // Going to sleep in noise reduction mode starts a conversion.
@@ -52,6 +53,7 @@ class Adc : public Peripheral {
     void clock_starts(uint64_t cycle, uint64_t stood) override;
     void write_control(uint8_t value, uint64_t cycle);
     void begin(uint64_t cycle);
+    void show_result();
     unsigned divisor() const;
     double selected() const;
     double difference(unsigned mux) const;
@@ -65,8 +67,9 @@ class Adc : public Peripheral {
     bool is_difference_ = false;
     bool held_ = false; // ADCL has been read: the result stays until ADCH has
     double sampled_ = 0;
+    uint16_t result_ = 0;
     uint64_t origin_ = 0; // the prescaler counts from here
-    std::function<void(uint64_t)> trigger_changed_ = [](uint64_t) {};
+    std::function<void(uint64_t)> setup_changed_ = [](uint64_t) {};
 };
 
 } // namespace tilenca::avr

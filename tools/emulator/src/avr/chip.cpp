@@ -1,9 +1,9 @@
 #include "avr/chip.h"
 
 #include "avr/ops.h"
+#include "avr/registers.h"
 #include "avr/unmodelled.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace tilenca::avr {
@@ -12,7 +12,9 @@ namespace {
 
 constexpr uint16_t kPinFirst = 0x20, kFlagsFirst = 0x35, kFlagsLast = 0x3C, kGtccr = 0x43, kSmcr = 0x53;
 constexpr uint16_t kMcusr = 0x54, kMcucr = 0x55, kSreg = 0x5F;
-constexpr uint8_t kIvce = 1, kIvsel = 2;
+constexpr uint8_t kIvce = 1, kIvsel = 2, kPud = 0x10, kJtd = 0x80;
+constexpr uint16_t kDidr2 = 0x7D, kDidr0 = 0x7E, kDidr1 = 0x7F;
+constexpr uint64_t kSequenceCycles = 4; // so long a protected bit can be changed after it was unlocked
 constexpr uint8_t kPsrSync = 1, kPsrAsync = 2, kTsm = 0x80;
 constexpr uint16_t kClkpr = 0x61, kPrr0 = 0x64, kPrr1 = 0x65, kSpl = 0x5D, kSph = 0x5E;
 constexpr uint8_t kSleepEnable = 1;
@@ -43,12 +45,13 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
     // Ports come first: a saved state is loaded in this order, and others enter themselves there again.
     attach(*gpio_);
     for (unsigned i = 0; i < timers_.size(); i++) {
-        timers_[i] = std::make_unique<Timer>(core, *gpio_, i);
+        timers_[i] = std::make_unique<Timer>(core, *gpio_, i == 2 ? own_prescaler_ : prescaler_, i);
         attach(*timers_[i]);
     }
     for (unsigned i = 0; i < usarts_.size(); i++) {
         usarts_[i] = std::make_unique<Usart>(core, *gpio_, i);
         attach(*usarts_[i]);
+        gpio_->attach_line(usarts_[i]->receive_pin(), Drive::Open); // a receiver listens to a line
     }
     const std::initializer_list<Peripheral*> others = {
         eeprom_.get(), adc_.get(),      comparator_.get(),      spi_.get(),
@@ -57,14 +60,16 @@ Chip::Chip(std::shared_ptr<Program> program, const Fuses& fuses)
         attach(*one);
     }
     for (uint16_t address = kIoStart; address < kSramStart; address++) {
-        const bool system = address == kGtccr || address == kSmcr || address == kMcucr || address == kSreg ||
+        const bool inputs_off = address >= kDidr2 && address <= kDidr1;
+        const bool system = inputs_off || address == kGtccr || address == kMcusr || address == kMcucr ||
                             address == kClkpr || address == kPrr0 || address == kPrr1;
-        if (system || is_unmodelled(address)) { // stored bytes, but for SREG
-            cpu_.special[address] =
-                address == kSreg ? kReadsThroughBus | kWritesThroughBus : kWritesThroughBus;
+        // Stored bytes: what is written is looked at, or loses the bits that do not exist.
+        if (system || is_unmodelled(address) || kRegisters.implemented[address] != 0xFF) {
+            cpu_.special[address] |= kWritesThroughBus;
         }
     }
     cpu_.special[kSpl] = cpu_.special[kSph] = kWritesThroughBus;
+    cpu_.special[kSreg] = kReadsThroughBus | kWritesThroughBus;
     for (size_t slot = 0; slot < kSlots; slot++) {
         at_slot_[slot] = &find_at_slot(static_cast<Slot>(slot));
     }
@@ -88,7 +93,10 @@ void Chip::attach(Peripheral& peripheral) {
 
 // What one part of the chip has to tell another.
 void Chip::join() {
-    adc_->on_trigger_changed([this](uint64_t cycle) { update_triggers(cycle); });
+    adc_->on_setup_changed([this](uint64_t cycle) {
+        update_triggers(cycle);
+        comparator_->inputs_changed(cycle); // the multiplexer feeds it, too
+    });
     gpio_->on_int0([this](uint64_t cycle) { adc_->trigger(AdcTrigger::Int0, cycle); });
     for (unsigned i : {0u, 1u}) {
         timers_[i]->on_flags([this](uint64_t cycle) {
@@ -97,6 +105,7 @@ void Chip::join() {
             }
         });
     }
+    gpio_->on_line_changed([this](PinId pin) { line_changed(pin); });
     comparator_->on_setup(
         [this](uint64_t cycle) { timers_[1]->capture_from_comparator(comparator_->captures(), cycle); });
     comparator_->on_change([this](bool level, uint64_t cycle) {
@@ -121,36 +130,6 @@ void Chip::update_triggers(uint64_t cycle) {
                               cycle);
 }
 
-void Chip::reset(ResetCause cause) {
-    const uint8_t causes = cause == ResetCause::PowerOn ? 0 : cpu_.data[kMcusr];
-    cpu_.reset(fuses_.resets_to_boot() ? fuses_.boot_start() : 0);
-    cpu_.data[kMcusr] = causes | static_cast<uint8_t>(cause);
-    vectors_movable_until_ = prescaler_changeable_until_ = 0;
-    update_clocks(cpu_.cycle);
-    for (Peripheral* peripheral : all_) {
-        peripheral->reset(cpu_.cycle);
-    }
-    const bool by_watchdog = (cpu_.data[kMcusr] & static_cast<uint8_t>(ResetCause::Watchdog)) != 0;
-    if (by_watchdog || fuses_.watchdog_always_on()) {
-        watchdog_->force_on(cpu_.cycle);
-    }
-    const uint32_t divisor = fuses_.starts_at_an_eighth() ? 8 : 1;
-    cpu_.data[kClkpr] = divisor == 8 ? 3 : 0;
-    cpu_.yields = cpu_.clock_divisor != divisor;
-    cpu_.clock_divisor = divisor;
-}
-
-void Chip::power_on() {
-    std::memset(cpu_.data, 0, sizeof cpu_.data);
-    cpu_.fault.clear();
-    cpu_.stack_deepest = kDataBytes;
-    reset(ResetCause::PowerOn);
-}
-
-void Chip::pass_while_off(uint64_t cycle) {
-    cpu_.cycle = std::max(cpu_.cycle, cycle);
-}
-
 // --- the core's bus ---
 
 uint8_t Chip::read(uint16_t address, uint64_t cycle) {
@@ -159,8 +138,11 @@ uint8_t Chip::read(uint16_t address, uint64_t cycle) {
 }
 
 void Chip::write(uint16_t address, uint8_t value, uint64_t cycle) {
+    value &= kRegisters.implemented[address];
     if (Peripheral* peripheral = at_address_[address]; peripheral != nullptr) {
-        peripheral->write(address, value, cycle);
+        if (!peripheral->is_reduced()) {
+            peripheral->write(address, value, cycle);
+        }
     } else {
         write_system(address, value, cycle);
     }
@@ -185,23 +167,41 @@ void Chip::write_system(uint16_t address, uint8_t value, uint64_t cycle) {
         return;
     }
     if (address == kMcucr) {
-        const bool movable = cycle <= vectors_movable_until_;
-        vectors_movable_until_ = (value & kIvce) != 0 ? cycle + 4 : 0;
-        const uint8_t selected = (movable && (value & kIvce) == 0 ? value : cpu_.data[kMcucr]) & kIvsel;
-        cpu_.data[kMcucr] = static_cast<uint8_t>((value & ~(kIvsel | kIvce)) | selected);
-        cpu_.vector_base = selected != 0 ? fuses_.boot_start() : 0;
+        write_control(value, cycle);
+        return;
+    }
+    if (address == kMcusr) { // its flags can be cleared only
+        cpu_.data[kMcusr] &= value;
         return;
     }
     cpu_.data[address] = value;
     if (address == kSmcr) {
         cpu_.sleep_enabled = (value & kSleepEnable) != 0;
     } else if (address == kPrr0 || address == kPrr1) {
-        update_clocks(cycle);
+        update_clocks(cycle + 1);
     } else if (address == kGtccr) {
-        synchronise_prescalers(value, cycle);
+        synchronise_prescalers(value, cycle + 1);
+    } else if (address == kDidr0 || address == kDidr2) { // ADC0 to 7, and 8 to 15
+        gpio_->set_inputs_off(port_index(address == kDidr0 ? 'F' : 'K'), value);
+    } else if (address == kDidr1) { // AIN0 and AIN1
+        gpio_->set_inputs_off(port_index('E'), static_cast<uint8_t>(value << 2));
     } else if (const char* function = unmodelled_function(address, value); function != nullptr) {
         warnings_.once(function);
     }
+}
+
+// IVSEL can be changed within four cycles after IVCE was set alone; JTD when it is written twice within four.
+void Chip::write_control(uint8_t value, uint64_t cycle) {
+    const uint8_t before = cpu_.data[kMcucr];
+    const bool movable = cycle <= vectors_movable_until_ && (value & kIvce) == 0;
+    vectors_movable_until_ = (value & kIvce) != 0 ? cycle + kSequenceCycles : 0;
+    const bool repeated = cycle <= jtag_changeable_until_ && ((value ^ jtag_wanted_) & kJtd) == 0;
+    jtag_changeable_until_ = repeated ? 0 : cycle + kSequenceCycles;
+    jtag_wanted_ = value & kJtd;
+    const uint8_t kept = (movable ? 0 : kIvsel) | (repeated ? 0 : kJtd);
+    cpu_.data[kMcucr] = static_cast<uint8_t>(((value & ~kept) | (before & kept)) & ~kIvce);
+    cpu_.vector_base = (cpu_.data[kMcucr] & kIvsel) != 0 ? fuses_.boot_start() : 0;
+    gpio_->set_pull_ups((value & kPud) == 0, cycle);
 }
 
 // Compilers write the high byte first, and the low byte at once after it.
@@ -220,9 +220,23 @@ void Chip::write_stack_pointer(uint16_t address, uint8_t value, uint64_t cycle) 
 }
 
 void Chip::synchronise_prescalers(uint8_t value, uint64_t cycle) {
+    const auto restarts = [value](const Timer& timer) {
+        return (value & (timer.has_own_prescaler() ? kPsrAsync : kPsrSync)) != 0;
+    };
     for (auto& timer : timers_) {
-        if ((value & (timer->has_own_prescaler() ? kPsrAsync : kPsrSync)) != 0) {
-            timer->restart_prescaler(cycle);
+        if (restarts(*timer)) {
+            timer->prescaler_restarts(cycle);
+        }
+    }
+    if ((value & kPsrSync) != 0) {
+        prescaler_.restart(cycle);
+    }
+    if ((value & kPsrAsync) != 0) {
+        own_prescaler_.restart(cycle);
+    }
+    for (auto& timer : timers_) {
+        if (restarts(*timer)) {
+            timer->prescaler_restarted();
         }
     }
     const bool held = (value & kTsm) != 0; // the resets stay as long as TSM does

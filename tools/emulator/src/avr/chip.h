@@ -4,6 +4,7 @@
 #include "avr/comparator.h"
 #include "avr/eeprom.h"
 #include "avr/gpio.h"
+#include "avr/hardware.h"
 #include "avr/self_programming.h"
 #include "avr/spi.h"
 #include "avr/timer.h"
@@ -37,7 +38,10 @@ class Chip final : private Bus {
     Chip& operator=(const Chip&) = delete;
 
     void reset(ResetCause cause);
-    // Off and on again: as reset, and SRAM forgets.
+    // What is not ideal about it; before it runs, and switched on with it anew.
+    void set_hardware(const Hardware& hardware);
+    // Its supply goes: as reset, and SRAM forgets.
+    void power_off();
     void power_on();
     // As long as it is off, time passes and nothing happens.
     void pass_while_off(uint64_t cycle);
@@ -58,8 +62,8 @@ class Chip final : private Bus {
     // Whether it has programmed itself: then the image's symbols tell nothing any more.
     bool has_changed_flash() const { return self_programming_->has_changed_flash(); }
     const Warnings& warnings() const { return warnings_; }
-    // Changes the level of an input from `cycle` on; the pin has a line attached.
-    void push_edge(PinId pin, uint64_t cycle, bool level);
+    // From `cycle` on an input is driven so; the pin has a line attached.
+    void push_edge(PinId pin, uint64_t cycle, Drive drive);
     // Share of time (0..1) an output is high now.
     double duty(PinId pin);
     // When the core next does anything at all: kNever if it sleeps for good.
@@ -96,12 +100,17 @@ class Chip final : private Bus {
     void join();
     void update_triggers(uint64_t cycle);
     void update_clocks(uint64_t cycle);
+    void forget_sram();
+    void restart(ResetCause cause);
+    uint64_t start_up_cycles(ResetCause cause) const;
     void write_stack_pointer(uint16_t address, uint8_t value, uint64_t cycle);
     void write_clock_prescaler(uint8_t value, uint64_t cycle);
     void update_trap(uint32_t word);
     void flash_state(Archive& archive);
     void forget_past(PinId pin);
+    void line_changed(PinId pin);
     void write_system(uint16_t address, uint8_t value, uint64_t cycle);
+    void write_control(uint8_t value, uint64_t cycle);
     void synchronise_prescalers(uint8_t value, uint64_t cycle);
     Peripheral& find_at_slot(Slot slot);
 
@@ -119,17 +128,21 @@ class Chip final : private Bus {
     std::unique_ptr<Twi> twi_;
     std::unique_ptr<Watchdog> watchdog_;
     std::unique_ptr<SelfProgramming> self_programming_;
+    Prescaler prescaler_, own_prescaler_; // of timer 2
     std::array<std::unique_ptr<Timer>, 6> timers_;
     std::array<std::unique_ptr<Usart>, 4> usarts_;
     std::array<Peripheral*, kSramStart> at_address_{};
     std::array<Peripheral*, kVectors> at_vector_{};
     std::array<Peripheral*, kSlots> at_slot_{};
     std::vector<Peripheral*> all_;
-    uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0;
+    uint64_t vectors_movable_until_ = 0, prescaler_changeable_until_ = 0, jtag_changeable_until_ = 0;
+    uint8_t jtag_wanted_ = 0;
     uint16_t stack_before_ = 0; // the stack pointer while its two bytes are being written
     uint64_t stack_written_until_ = 0;
     std::set<uint32_t> breakpoints_, marks_;
     std::vector<MarkPassed> marks_passed_;
+    Hardware hardware_;
+    Random random_; // of the contents of SRAM
     bool told_read_ = false, told_write_ = false;
 };
 

@@ -7,24 +7,26 @@ namespace tilenca::avr {
 void Chip::forget_past(PinId pin) {
     uint64_t needed = spi_->needs_line_from(cpu_.cycle);
     for (auto& usart : usarts_) {
-        const PinId receives = usart->receive_pin();
-        if (receives.port == pin.port && receives.bit == pin.bit) {
+        if (usart->receive_pin() == pin) {
             needed = usart->needs_line_from(needed);
         }
     }
     gpio_->line(pin)->forget_before(needed);
 }
 
-void Chip::push_edge(PinId pin, uint64_t cycle, bool level) {
+void Chip::push_edge(PinId pin, uint64_t cycle, Drive drive) {
     Line& line = *gpio_->line(pin);
     if (line.edges() > 32) {
         forget_past(pin);
     }
-    line.push(cycle, level);
+    line.push(cycle, drive);
     gpio_->line_changed(pin);
+    line_changed(pin);
+}
+
+void Chip::line_changed(PinId pin) {
     for (auto& usart : usarts_) {
-        const PinId receives = usart->receive_pin();
-        if (receives.port == pin.port && receives.bit == pin.bit) {
+        if (usart->receive_pin() == pin) {
             usart->line_changed();
         }
     }
@@ -151,8 +153,9 @@ void Chip::state(Archive& archive) {
         peripheral->clock_state(archive);
         peripheral->state(archive);
     }
-    archive(vectors_movable_until_, prescaler_changeable_until_, stack_before_, stack_written_until_,
-            told_read_, told_write_);
+    archive(vectors_movable_until_, prescaler_changeable_until_, jtag_changeable_until_, jtag_wanted_,
+            stack_before_, stack_written_until_, prescaler_, own_prescaler_, hardware_, random_, told_read_,
+            told_write_);
     if (archive.loading()) {
         self_programming_->program_changed();
         marks_passed_.clear();

@@ -20,27 +20,35 @@ constexpr uint64_t kCrystalCycles = 16384, kStandbyCycles = 6;
 void Chip::update_clocks(uint64_t cycle) {
     const auto mode = static_cast<SleepMode>(cpu_.data[kSmcr] >> 1 & 7);
     const uint8_t first = cpu_.data[kPrr0], second = cpu_.data[kPrr1], held = cpu_.data[kGtccr];
-    const auto set = [cycle](Peripheral& unit, bool stands) {
+    const auto set = [cycle](Peripheral& unit, bool stands, bool reduced) {
+        unit.set_reduced(reduced);
         if (stands) {
             unit.stop_clock(cycle);
         } else {
             unit.start_clock(cycle);
         }
     };
+    const bool sync_held = (held & kTsm) != 0 && (held & kPsrSync) != 0;
+    const bool own_held = (held & kTsm) != 0 && (held & kPsrAsync) != 0;
+    prescaler_.set_stands(cpu_.deeply || sync_held, cycle); // power reduction does not reach it
     constexpr uint8_t kTimerBit[6] = {5, 3, 6, 3, 4, 5};
     for (unsigned i = 0; i < timers_.size(); i++) {
         const bool reduced = ((i < 3 ? first : second) >> kTimerBit[i] & 1) != 0;
-        const bool prescaler_held =
-            (held & kTsm) != 0 && (held & (timers_[i]->has_own_prescaler() ? kPsrAsync : kPsrSync)) != 0;
-        set(*timers_[i], cpu_.deeply || reduced || prescaler_held);
+        const bool stands =
+            cpu_.deeply || reduced || (timers_[i]->has_own_prescaler() ? own_held : sync_held);
+        if (timers_[i]->has_own_prescaler()) { // it is a part of the timer, and stands with it
+            own_prescaler_.set_stands(stands, cycle);
+        }
+        set(*timers_[i], stands, reduced);
     }
     for (unsigned i = 0; i < usarts_.size(); i++) {
         const bool reduced = (i == 0 ? first >> 1 & 1 : second >> (i - 1) & 1) != 0;
-        set(*usarts_[i], cpu_.deeply || reduced);
+        set(*usarts_[i], cpu_.deeply || reduced, reduced);
     }
-    set(*spi_, cpu_.deeply || (first & 0x04) != 0);
-    set(*twi_, cpu_.deeply || (first & 0x80) != 0);
-    set(*adc_, (cpu_.deeply && mode != SleepMode::NoiseReduction) || (first & 0x01) != 0);
+    const bool spi_off = (first & 0x04) != 0, twi_off = (first & 0x80) != 0, adc_off = (first & 0x01) != 0;
+    set(*spi_, cpu_.deeply || spi_off, spi_off);
+    set(*twi_, cpu_.deeply || twi_off, twi_off);
+    set(*adc_, (cpu_.deeply && mode != SleepMode::NoiseReduction) || adc_off, adc_off);
 }
 
 void Chip::sleep_changed(bool asleep, uint64_t cycle) {

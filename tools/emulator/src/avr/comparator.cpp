@@ -6,9 +6,9 @@ namespace tilenca::avr {
 
 namespace {
 
-constexpr uint16_t kAcsr = 0x50, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C;
+constexpr uint16_t kAcsr = 0x50, kPrr0 = 0x64, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C;
 constexpr uint8_t kAcd = 0x80, kAcbg = 0x40, kAco = 0x20, kAci = 0x10, kAcie = 0x08, kAcic = 0x04;
-constexpr uint8_t kAcis = 0x03, kAcme = 0x40, kAden = 0x80, kMux5 = 0x08;
+constexpr uint8_t kAcis = 0x03, kAcme = 0x40, kAden = 0x80, kMux5 = 0x08, kPradc = 0x01;
 constexpr uint16_t kBandgap = 225; // 1.1 V of 5 V
 
 } // namespace
@@ -27,7 +27,8 @@ bool Comparator::compare() const {
     }
     const uint16_t positive = (byte(kAcsr) & kAcbg) != 0 ? kBandgap : inputs_[0];
     uint16_t negative = inputs_[1];
-    if ((byte(kAdcsrb) & kAcme) != 0 && (byte(kAdcsra) & kAden) == 0) {
+    const bool has_multiplexer = (byte(kAdcsra) & kAden) == 0 && (byte(kPrr0) & kPradc) == 0;
+    if ((byte(kAdcsrb) & kAcme) != 0 && has_multiplexer) {
         negative = adc_.input((byte(kAdmux) & 7u) | ((byte(kAdcsrb) & kMux5) != 0 ? 8u : 0u));
     }
     return positive > negative;
@@ -48,7 +49,7 @@ void Comparator::inputs_changed(uint64_t cycle) {
 }
 
 uint8_t Comparator::read(uint16_t, uint64_t cycle) {
-    inputs_changed(cycle); // the ADC's multiplexer may have been moved
+    inputs_changed(cycle); // power reduction may have taken the multiplexer away
     return static_cast<uint8_t>((byte(kAcsr) & ~kAco) | (output_ ? kAco : 0));
 }
 

@@ -5,7 +5,7 @@
 namespace tilenca::avr {
 
 void Counter::reset() {
-    *this = Counter(max_);
+    *this = Counter(max_, channels_);
 }
 
 uint16_t Counter::top() const {
@@ -56,8 +56,8 @@ uint64_t Counter::ticks_to_boundary() const {
             soonest = std::min<uint64_t>(soonest, count_ - value + 1u);
         }
     };
-    for (const uint16_t value : compares_) {
-        consider(value);
+    for (unsigned channel = 0; channel < channels_; channel++) {
+        consider(compares_[channel]);
     }
     if (!down_) {
         consider(top());
@@ -109,7 +109,7 @@ uint64_t Counter::step(uint64_t ticks) {
 
 // The tick that leaves the present value.
 void Counter::leave() {
-    for (unsigned channel = 0; channel < 3; channel++) {
+    for (unsigned channel = 0; channel < channels_; channel++) {
         if (compares_[channel] == count_ && !blocked_) {
             flags |= static_cast<uint8_t>(kFlagCompareA << channel);
             if (!is_pwm() || toggles(channel)) {
@@ -206,7 +206,7 @@ uint64_t Counter::ticks_to_flag(uint8_t mask) const {
             soonest = ticks;
         }
     };
-    for (unsigned channel = 0; channel < 3; channel++) {
+    for (unsigned channel = 0; channel < channels_; channel++) {
         if ((mask & kFlagCompareA << channel) != 0) {
             consider(ticks_to_leave(compares_[channel], true));
         }

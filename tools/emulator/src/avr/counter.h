@@ -24,7 +24,7 @@ struct WaveMode {
 
 class Counter {
   public:
-    explicit Counter(uint16_t max) : max_(max) {}
+    Counter(uint16_t max, unsigned channels) : max_(max), channels_(channels) {}
 
     void reset();
     void set_mode(const WaveMode& mode);
@@ -57,6 +57,8 @@ class Counter {
     uint16_t count() const { return count_; }
     uint16_t compare(unsigned channel) const { return buffers_[channel]; }
     uint16_t capture() const { return capture_; }
+    // The bits that a compare register has: as many as the mode counts.
+    uint16_t compare_mask() const { return mode_.top == Top::Fixed ? mode_.fixed_top : 0xFFFF; }
     uint16_t top() const;
     const WaveMode& mode() const { return mode_; }
     // The output's level now, and its share of time high (0..1).
@@ -82,6 +84,7 @@ class Counter {
     void load_buffers() { compares_ = buffers_; }
 
     uint16_t max_;
+    unsigned channels_;
     uint32_t free_ticks_ = 0; // until the count reaches a value at which anything happens; 0: not known
     WaveMode mode_;
     uint16_t count_ = 0;

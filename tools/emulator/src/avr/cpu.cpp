@@ -143,6 +143,9 @@ void Cpu::leave_breakpoint() {
 void Cpu::run(uint64_t until) {
     while (cycle < until && fault.empty() && !halted && !yields) {
         const uint64_t next_event = event_due > cycle ? event_due : bus->serve_events(cycle);
+        if (cycle >= until) { // an event has reset the chip, which takes its time to start
+            break;
+        }
         const bool wanted = requests != 0 && interrupts_on;
         if (wanted && cycle > held_until) {
             take_interrupt();

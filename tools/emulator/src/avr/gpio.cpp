@@ -1,12 +1,14 @@
 #include "avr/gpio.h"
 
 #include "avr/pin_registers.h"
+#include "avr/registers.h"
 
 namespace tilenca::avr {
 
 Gpio::Gpio(const Core& core) : Peripheral(core) {
     for (unsigned i = 0; i < kPorts; i++) {
         ports_[i].base = static_cast<uint16_t>(i < 7 ? 0x20 + 3 * i : 0x100 + 3 * (i - 7));
+        ports_[i].exist = kRegisters.implemented[ports_[i].base];
     }
 }
 
@@ -62,6 +64,7 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
         }
         const unsigned changed = (ddr(*port) ^ port->ddr_before) | (latch(*port) ^ port->latch_before);
         shown_changes_ += (changed & port->shown) != 0;
+        update_pull_ups(*port, cycle);
         update(*port, cycle);
         return;
     } else {
@@ -76,17 +79,29 @@ void Gpio::write(uint16_t address, uint8_t value, uint64_t cycle) {
 uint8_t Gpio::pins_as_read(Port& port, uint64_t cycle) {
     update(port, cycle);
     const bool too_soon = cycle == port.written + 1;
-    return too_soon ? compute_levels(port, cycle, port.ddr_before, port.latch_before) : port.levels;
+    const uint8_t levels = too_soon ? compute_levels(port, cycle, port.ddr_before, port.latch_before, 0xFF)
+                                    : all_levels(port, cycle);
+    return static_cast<uint8_t>(levels & port.exist & ~port.inputs_off);
 }
 
-uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch) {
-    uint8_t outside = port.held;
+// Of floating pins those in `noise_of` read noise; the others stay as they are known.
+uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t latch, uint8_t noise_of) {
+    const uint8_t pulled = pull_ups(ddr, latch), floating = floating_pins(port, ddr, pulled);
+    unsigned outside = (port.held & port.driven) | (pulled & ~port.driven);
+    if (!noise_.is_on()) {
+        outside |= floating;
+    } else {
+        outside |= floating & ~noise_of & port.levels;
+        if ((floating & noise_of) != 0) {
+            outside |= floating & noise_of & noise_.levels(index_of(port), cycle);
+        }
+    }
     for (unsigned lines = port.has_lines & ~ddr; lines != 0; lines &= lines - 1) {
         const int bit = __builtin_ctz(lines);
-        outside &= static_cast<uint8_t>(~(!port.lines[bit]->level_at(cycle) << bit));
+        outside = (outside & ~(1u << bit)) | unsigned{port.lines[bit]->level_at(cycle)} << bit;
     }
     uint8_t driven = latch;
-    const auto index = static_cast<uint8_t>(&port - ports_.data());
+    const uint8_t index = index_of(port);
     for (unsigned taken = port.taken & ddr; taken != 0; taken &= taken - 1) {
         const auto bit = static_cast<uint8_t>(__builtin_ctz(taken));
         if (port.sources[bit] != nullptr) {
@@ -102,77 +117,97 @@ uint8_t Gpio::compute_levels(Port& port, uint64_t cycle, uint8_t ddr, uint8_t la
 }
 
 void Gpio::update(Port& port, uint64_t cycle) {
-    const uint8_t before = port.levels, after = compute_levels(port, cycle);
-    if (before == after) {
+    if (const uint8_t audible = audible_pins(port); audible != port.audible) {
+        port.audible = audible;
+        note_watched_ports();
+        schedule_lines(cycle);
+    }
+    const uint8_t before = port.levels, after = compute_levels(port, cycle, port.audible);
+    const uint8_t open = port.watched_out == 0 ? 0 : open_pins(port, port.watched_out, cycle);
+    if (before == after && open == port.open) {
         return;
     }
+    const unsigned changed = (before ^ after) | (open ^ port.open);
     port.levels = after;
-    const auto index = static_cast<uint8_t>(&port - ports_.data());
-    const auto changed = static_cast<uint8_t>(before ^ after);
-    for (unsigned told = changed & port.watched_out; told != 0; told &= told - 1) {
+    port.open = open;
+    // What a USART has taken over is announced by it alone.
+    for (unsigned told = changed & port.watched_out & ~port.silent; told != 0; told &= told - 1) {
         const auto bit = static_cast<uint8_t>(__builtin_ctz(told));
-        // What a USART has taken over is announced by it alone.
-        if ((port.taken >> bit & 1) == 0 || port.sources[bit] != nullptr) {
-            tell({index, bit}, cycle, (after >> bit & 1) != 0);
-        }
+        tell({index_of(port), bit}, cycle, (after >> bit & 1) != 0, (open >> bit & 1) != 0);
     }
     pins_changed(port, before, after, cycle);
 }
 
-void Gpio::announce(PinId pin, uint64_t cycle, bool level) {
-    tell(pin, cycle, level);
+// Floating pins whose edges could do something.
+uint8_t Gpio::audible_pins(const Port& port) const {
+    const unsigned listened = port.interrupting | port.heard;
+    return listened == 0 || !noise_.is_on()
+               ? 0
+               : static_cast<uint8_t>(listened & floating_pins(port, ddr(port), port.pulled));
 }
 
-void Gpio::tell(PinId pin, uint64_t cycle, bool level) {
-    for (EdgeListener* listener : ports_[pin.port].listeners[pin.bit]) {
-        listener->edge(pin, cycle, level);
+// Pins of a mask that nothing drives: neither the chip, nor its pull-up, nor anybody outside.
+uint8_t Gpio::open_pins(const Port& port, uint8_t mask, uint64_t cycle) const {
+    uint8_t open = floating_pins(port, ddr(port), port.pulled) & mask;
+    for (unsigned lines = port.has_lines & ~ddr(port) & mask; lines != 0; lines &= lines - 1) {
+        const int bit = __builtin_ctz(lines);
+        const Drive drive = port.lines[bit]->drive_at(cycle);
+        const bool is_pulled = (port.pulled >> bit & 1) != 0 && drive == Drive::Open;
+        open |= static_cast<uint8_t>((!is_driven(drive) && !is_pulled) << bit);
+    }
+    return static_cast<uint8_t>(open & ~port.silent);
+}
+
+// As a program reads them, floating ones included.
+uint8_t Gpio::all_levels(Port& port, uint64_t cycle) {
+    if (!noise_.is_on()) {
+        return port.levels;
+    }
+    const uint8_t rest = floating_pins(port, ddr(port), port.pulled) & ~port.audible;
+    const uint8_t noise = rest == 0 ? 0 : noise_.levels(index_of(port), cycle);
+    return static_cast<uint8_t>((port.levels & ~rest) | (noise & rest));
+}
+
+void Gpio::update_pull_ups(Port& port, uint64_t cycle) {
+    const uint8_t pulled = pull_ups(ddr(port), latch(port));
+    const unsigned changed = (pulled ^ port.pulled) & port.has_lines;
+    port.pulled = pulled;
+    for (unsigned lines = changed; lines != 0; lines &= lines - 1) {
+        const auto bit = static_cast<uint8_t>(__builtin_ctz(lines));
+        port.lines[bit]->set_pull_up((pulled >> bit & 1) != 0);
+        line_was_changed_({index_of(port), bit});
+    }
+    if ((changed & port.watched_in) != 0) {
+        schedule_lines(cycle);
     }
 }
 
-void Gpio::take_over(PinId pin, PinSource* source, bool as_output, uint64_t cycle) {
-    Port& port = ports_[pin.port];
-    update(port, cycle);
-    if (as_output) {
-        port.taken |= pin.mask();
-        drive_again(pin, source);
+void Gpio::set_pull_ups(bool on, uint64_t cycle) {
+    if (on == pull_ups_on_) {
+        return;
     }
-    note_shown(pin);
-    update(port, cycle);
-}
-
-void Gpio::drive_again(PinId pin, PinSource* source) {
-    Port& port = ports_[pin.port];
-    PinSource*& first = port.sources[pin.bit];
-    (first == nullptr || first == source ? first : port.modulators[pin.bit]) = source;
-}
-
-void Gpio::release(PinId pin, uint64_t cycle, const PinSource* source) {
-    Port& port = ports_[pin.port];
-    const bool was_silent = (port.taken & pin.mask()) != 0 && port.sources[pin.bit] == nullptr;
-    PinSource *&first = port.sources[pin.bit], *&second = port.modulators[pin.bit];
-    if (second != nullptr && source != nullptr) { // the other one stays
-        first = first == source ? second : first;
-    } else {
-        port.taken &= static_cast<uint8_t>(~pin.mask());
-        first = nullptr;
-    }
-    second = nullptr;
-    note_shown(pin);
-    update(port, cycle);
-    if (was_silent) {
-        announce(pin, cycle, level(pin, cycle));
+    pull_ups_on_ = on;
+    for (Port& port : ports_) {
+        update_pull_ups(port, cycle);
+        update(port, cycle);
     }
 }
 
 bool Gpio::level(PinId pin, uint64_t cycle) {
-    update(ports_[pin.port], cycle);
-    return (ports_[pin.port].levels >> pin.bit & 1) != 0;
+    Port& port = ports_[pin.port];
+    update(port, cycle);
+    return (all_levels(port, cycle) & pin.mask()) != 0;
 }
 
 bool Gpio::input_at(PinId pin, uint64_t cycle) const {
     const Port& port = ports_[pin.port];
-    const bool held = (port.held >> pin.bit & 1) != 0;
-    return held && (port.lines[pin.bit] == nullptr || port.lines[pin.bit]->level_at(cycle));
+    if (port.lines[pin.bit] != nullptr) {
+        return port.lines[pin.bit]->level_at(cycle);
+    }
+    if ((port.driven & pin.mask()) != 0) {
+        return (port.held & pin.mask()) != 0;
+    }
+    return (port.pulled & pin.mask()) != 0 || noise_.level(pin, cycle);
 }
 
 bool Gpio::is_output(PinId pin) const {
@@ -184,11 +219,14 @@ bool Gpio::port_bit(PinId pin) const {
 }
 
 void Gpio::reset(uint64_t cycle) {
+    pull_ups_on_ = true;
     for (Port& port : ports_) {
-        port.taken = port.interrupting = port.watched_in = port.watched = 0;
+        port.taken = port.silent = port.interrupting = port.watched_in = port.watched = port.heard = 0;
+        port.inputs_off = 0;
         port.watchers.fill(nullptr);
         port.sources.fill(nullptr);
         port.modulators.fill(nullptr);
+        update_pull_ups(port, cycle);
         update(port, cycle);
     }
     note_watched_ports();
@@ -196,13 +234,16 @@ void Gpio::reset(uint64_t cycle) {
 }
 
 void Gpio::state(Archive& archive) {
+    archive(noise_, pull_ups_on_, shown_changes_);
     for (Port& port : ports_) {
-        archive(port.written, port.ddr_before, port.latch_before, port.levels, port.held, port.taken,
-                port.interrupting, port.watched, port.watched_in, port.has_lines);
+        archive(port.written, port.ddr_before, port.latch_before, port.levels, port.driven, port.held,
+                port.taken, port.silent, port.interrupting, port.watched, port.heard, port.watched_in,
+                port.has_lines, port.inputs_off);
         for (unsigned bit = 0; bit < 8; bit++) {
             if ((port.has_lines >> bit & 1) != 0) {
                 if (port.lines[bit] == nullptr) {
-                    port.lines[bit] = std::make_unique<Line>();
+                    const PinId pin{index_of(port), static_cast<uint8_t>(bit)};
+                    port.lines[bit] = std::make_unique<Line>(noise_, pin, Drive::Open);
                 }
                 archive(*port.lines[bit]);
             }
@@ -211,9 +252,11 @@ void Gpio::state(Archive& archive) {
             port.sources.fill(nullptr);
             port.modulators.fill(nullptr);
             port.watchers.fill(nullptr);
+            port.pulled = pull_ups(ddr(port), latch(port));
+            port.audible = audible_pins(port);
+            port.open = open_pins(port, port.watched_out, core_.cpu.cycle);
         }
     }
-    archive(shown_changes_);
     note_watched_ports();
 }
 

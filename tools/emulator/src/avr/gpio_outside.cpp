@@ -5,9 +5,10 @@
 
 namespace tilenca::avr {
 
-Line& Gpio::attach_line(PinId pin) {
+Line& Gpio::attach_line(PinId pin, Drive drive) {
     Port& port = ports_[pin.port];
-    port.lines[pin.bit] = std::make_unique<Line>();
+    port.lines[pin.bit] = std::make_unique<Line>(noise_, pin, drive);
+    port.lines[pin.bit]->set_pull_up((port.pulled & pin.mask()) != 0);
     port.has_lines |= pin.mask();
     update_watched(core_.cpu.cycle);
     return *port.lines[pin.bit];
@@ -21,9 +22,18 @@ void Gpio::line_changed(PinId pin) {
     }
 }
 
-void Gpio::hold_input(PinId pin, bool level, uint64_t cycle) {
+void Gpio::hold_input(PinId pin, std::optional<bool> level, uint64_t cycle) {
     Port& port = ports_[pin.port];
-    port.held = static_cast<uint8_t>((port.held & ~pin.mask()) | level << pin.bit);
+    if (Line* wire = line(pin); wire != nullptr) {
+        wire->hold(cycle, level);
+        line_was_changed_(pin);
+        if ((port.watched_in & pin.mask()) != 0) {
+            schedule_lines(cycle);
+        }
+    } else {
+        port.driven = static_cast<uint8_t>((port.driven & ~pin.mask()) | level.has_value() << pin.bit);
+        port.held = static_cast<uint8_t>((port.held & ~pin.mask()) | level.value_or(false) << pin.bit);
+    }
     update(port, cycle);
 }
 
@@ -31,6 +41,7 @@ void Gpio::listen(PinId pin, EdgeListener* listener) {
     Port& port = ports_[pin.port];
     port.listeners[pin.bit].push_back(listener);
     port.watched_out |= pin.mask();
+    port.open = open_pins(port, port.watched_out, core_.cpu.cycle);
     update_watched(core_.cpu.cycle);
 }
 
@@ -44,13 +55,15 @@ void Gpio::ignore(PinId pin, EdgeListener* listener) {
     update_watched(core_.cpu.cycle);
 }
 
-void Gpio::watch(PinId pin, PinWatcher* watcher, uint64_t cycle) {
+void Gpio::watch(PinId pin, PinWatcher* watcher, bool noise, uint64_t cycle) {
     Port& port = ports_[pin.port];
-    if (port.watchers[pin.bit] == watcher) {
+    const bool hears = noise && watcher != nullptr;
+    if (port.watchers[pin.bit] == watcher && ((port.heard & pin.mask()) != 0) == hears) {
         return;
     }
     port.watchers[pin.bit] = watcher;
     port.watched = static_cast<uint8_t>((port.watched & ~pin.mask()) | (watcher != nullptr) << pin.bit);
+    port.heard = static_cast<uint8_t>((port.heard & ~pin.mask()) | hears << pin.bit);
     update_watched(cycle);
 }
 

@@ -52,7 +52,7 @@ class Peripheral {
     virtual void on_event(Slot /*slot*/, uint64_t /*cycle*/) {}
     virtual std::vector<uint8_t> vectors() const { return {}; }
     virtual void interrupt_taken(uint8_t /*vector*/) {}
-    // All registers are zero already.
+    // All registers have their initial values already.
     virtual void reset(uint64_t cycle) = 0;
     // What it holds besides its registers, which lie in data memory.
     virtual void state(Archive& archive) = 0;
@@ -71,7 +71,10 @@ class Peripheral {
             clock_starts(cycle, cycle - stands_since_);
         }
     }
-    void clock_state(Archive& archive) { archive(stands_, stands_since_); }
+    // Power reduction has taken its clock: its registers cannot be written (data sheet, section 11.8).
+    void set_reduced(bool reduced) { reduced_ = reduced; }
+    bool is_reduced() const { return reduced_; }
+    void clock_state(Archive& archive) { archive(stands_, stands_since_, reduced_); }
 
   protected:
     virtual void clock_stops(uint64_t /*cycle*/) {}
@@ -83,7 +86,7 @@ class Peripheral {
     Core core_;
 
   private:
-    bool stands_ = false;
+    bool stands_ = false, reduced_ = false;
     uint64_t stands_since_ = 0;
 };
 

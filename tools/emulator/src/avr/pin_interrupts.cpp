@@ -123,12 +123,14 @@ void Gpio::update_watched(uint64_t cycle) {
     for (unsigned i = 0; i < kPorts; i++) {
         Port& port = ports_[i];
         port.watched_in = (port.interrupting | port.watched | port.watched_out) & port.has_lines;
+        const uint8_t audible = audible_pins(port);
         // What happened while nobody watched raises nothing now.
-        if (const uint8_t fresh = port.watched_in & ~before[i]; fresh != 0) {
+        if (const unsigned fresh = (port.watched_in & ~before[i]) | (audible & ~port.audible); fresh != 0) {
             port.levels =
-                static_cast<uint8_t>((port.levels & ~fresh) | (compute_levels(port, cycle) & fresh));
+                static_cast<uint8_t>((port.levels & ~fresh) | (compute_levels(port, cycle, 0xFF) & fresh));
         }
-        if (port.watched_in != 0) {
+        port.audible = audible;
+        if ((port.watched_in | port.audible) != 0) {
             update(port, cycle);
         }
     }
@@ -140,18 +142,21 @@ void Gpio::update_watched(uint64_t cycle) {
 void Gpio::note_watched_ports() {
     watched_ports_ = 0;
     for (unsigned i = 0; i < kPorts; i++) {
-        watched_ports_ |= static_cast<uint16_t>((ports_[i].watched_in != 0) << i);
+        watched_ports_ |= static_cast<uint16_t>(((ports_[i].watched_in | ports_[i].audible) != 0) << i);
     }
 }
 
 void Gpio::schedule_lines(uint64_t cycle) {
     uint64_t soonest = kNever;
     for (unsigned ports = watched_ports_; ports != 0; ports &= ports - 1) {
-        const Port& port = ports_[static_cast<unsigned>(__builtin_ctz(ports))];
+        const auto index = static_cast<unsigned>(__builtin_ctz(ports));
+        const Port& port = ports_[index];
         for (unsigned pins = port.watched_in; pins != 0; pins &= pins - 1) {
-            const Line::Edge* edge =
-                port.lines[static_cast<unsigned>(__builtin_ctz(pins))]->next_after(cycle);
-            soonest = edge == nullptr ? soonest : std::min(soonest, edge->cycle);
+            const auto edge = port.lines[static_cast<unsigned>(__builtin_ctz(pins))]->next_after(cycle);
+            soonest = edge ? std::min(soonest, edge->cycle) : soonest;
+        }
+        if (port.audible != 0) {
+            soonest = std::min(soonest, noise_.next_change(index, port.audible, cycle));
         }
     }
     core_.schedule.set(Slot::Lines, soonest);

@@ -13,7 +13,6 @@ namespace {
 constexpr uint16_t kSpmcsr = 0x57;
 constexpr uint8_t kSpmie = 0x80, kRwwsb = 0x40, kRwwsre = 0x10, kBlbset = 0x08, kPgwrt = 0x04, kPgers = 0x02;
 constexpr uint8_t kSigrd = 0x20, kSpmen = 0x01, kCommand = 0x3F;
-constexpr uint8_t kCalibration = 0x80; // of the internal oscillator; each chip has its own
 constexpr uint64_t kArmedCycles = 4;
 constexpr uint64_t kPageCycles = 64'000; // 4 ms; timed by the chip's own oscillator
 

@@ -12,6 +12,8 @@ constexpr uint32_t kPageBytes = 256;
 
 class SelfProgramming : public Peripheral {
   public:
+    static constexpr uint8_t kCalibration = 0x80; // of the internal oscillator; each chip has its own
+
     SelfProgramming(const Core& core, std::shared_ptr<Program>& program, Fuses& fuses);
 
     std::vector<uint16_t> registers() const override;

@@ -60,11 +60,11 @@ constexpr unsigned kNarrowCount = 2, kNarrowCompare = 3, kNarrowEnd = 5;
 
 } // namespace
 
-Timer::Timer(const Core& core, Gpio& gpio, unsigned number)
-    : Peripheral(core), gpio_(gpio), number_(number), base_(kPlaces[number].base),
+Timer::Timer(const Core& core, Gpio& gpio, Prescaler& prescaler, unsigned number)
+    : Peripheral(core), gpio_(gpio), prescaler_(prescaler), number_(number), base_(kPlaces[number].base),
       flag_register_(kPlaces[number].flags), mask_register_(kPlaces[number].mask),
       first_vector_(kPlaces[number].compare_vector), slot_(Slot::Timer0 + number),
-      counter_(is_wide() ? 0xFFFF : 0xFF) {
+      counter_(is_wide() ? 0xFFFF : 0xFF, is_wide() ? 3 : 2) {
     for (unsigned i = 0; i < channels(); i++) {
         pins_[i] = kPlaces[number].pins[i];
     }
@@ -139,13 +139,22 @@ uint8_t Timer::read_value(unsigned offset) {
     return static_cast<uint8_t>(value);
 }
 
+// A register has its new value from the cycle after the write on. The tick between the two still counts with
+// the old one, and a count that is written takes the place of that tick's.
 void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
-    sync(cycle);
     const unsigned first_value = is_wide() ? kWideCount : kNarrowCount;
-    if (address == flag_register_) {
+    if (address == flag_register_) { // a flag that this tick raises stays
+        sync(cycle);
         counter_.flags &= static_cast<uint8_t>(~value);
-    } else if (address == mask_register_) {
+        update_requests();
+        reschedule();
+        return;
+    }
+    cycle++;
+    sync(cycle);
+    if (address == mask_register_) {
         byte(address) = value;
+        watch_inputs(cycle);
     } else if (address < base_ + first_value) {
         write_control(address, value, cycle);
     } else {
@@ -188,6 +197,7 @@ void Timer::write_value(unsigned offset, uint8_t value) {
 }
 
 void Timer::set_compare(unsigned channel, uint16_t value) {
+    value &= counter_.compare_mask();
     counter_.set_compare(channel, value);
     const auto place = static_cast<uint16_t>(base_ + first_compare() + (is_wide() ? 2 * channel : channel));
     byte(place) = static_cast<uint8_t>(value);
@@ -203,9 +213,7 @@ void Timer::write_wide(unsigned offset, uint16_t value) {
     if (offset == kWideCount) {
         counter_.set_count(value);
     } else if (offset == kWideCapture) {
-        if (counter_.mode().top == Top::Capture) { // the chip, too, ignores the write in any other mode
-            counter_.set_capture(value);
-        }
+        counter_.set_capture(value); // in any mode, whatever the data sheet says: a chip was asked
     } else {
         set_compare((offset - kWideCompare) / 2, value);
     }
@@ -219,7 +227,7 @@ void Timer::write_control(uint16_t address, uint8_t value, uint64_t cycle) {
                 counter_.force_compare(i);
             }
         }
-        value &= is_wide() ? 0x00 : 0x3F; // the force bits read as zero
+        value &= is_wide() ? 0x00 : 0x0F; // the force bits read as zero
     }
     byte(address) = value;
     apply_mode();
@@ -247,12 +255,6 @@ void Timer::set_divisor(uint32_t divisor) {
     shift_ = static_cast<uint8_t>(divisor == 0 ? 0 : __builtin_ctz(divisor));
 }
 
-void Timer::restart_prescaler(uint64_t cycle) {
-    sync(cycle);
-    origin_ = cycle;
-    reschedule();
-}
-
 void Timer::reset(uint64_t cycle) {
     counter_.reset();
     counter_.set_mode(is_wide() ? kWideModes[0] : kNarrowModes[0]);
@@ -264,7 +266,7 @@ void Timer::reset(uint64_t cycle) {
     comparator_captures_ = false;
     capture_due_ = kNever;
     told_flags_ = 0;
-    origin_ = synced_ = cycle;
+    synced_ = cycle;
     core_.schedule.cancel(slot_);
 }
 

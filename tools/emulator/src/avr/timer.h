@@ -5,6 +5,7 @@
 
 #include "avr/counter.h"
 #include "avr/gpio.h"
+#include "avr/prescaler.h"
 
 #include <functional>
 
@@ -12,7 +13,7 @@ namespace tilenca::avr {
 
 class Timer final : public Peripheral, public PinSource, private PinWatcher {
   public:
-    Timer(const Core& core, Gpio& gpio, unsigned number);
+    Timer(const Core& core, Gpio& gpio, Prescaler& prescaler, unsigned number);
 
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
@@ -38,8 +39,9 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
 
     // Share of time a pin is high, if this timer drives it; otherwise -1.
     double duty(PinId pin, uint64_t cycle);
-    // The prescaler starts again from zero.
-    void restart_prescaler(uint64_t cycle);
+    // Its prescaler is about to start again, or has just done so.
+    void prescaler_restarts(uint64_t cycle) { sync(cycle); }
+    void prescaler_restarted() { reschedule(); }
     bool has_own_prescaler() const { return number_ == 2; }
 
   private:
@@ -57,7 +59,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     uint16_t control_b() const { return static_cast<uint16_t>(base_ + 1); }
     void sync(uint64_t cycle);
     void advance(uint64_t ticks, uint64_t cycle);
-    uint64_t tick_index(uint64_t cycle) const { return (cycle - origin_) >> shift_; }
+    uint64_t tick_index(uint64_t cycle) const { return prescaler_.count(cycle) >> shift_; }
     void write_control(uint16_t address, uint8_t value, uint64_t cycle);
     void write_value(unsigned offset, uint8_t value);
     unsigned first_compare() const;
@@ -73,6 +75,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     void reschedule();
 
     Gpio& gpio_;
+    Prescaler& prescaler_;
     unsigned number_;
     uint16_t base_, flag_register_, mask_register_;
     uint8_t first_vector_; // of compare A
@@ -84,7 +87,6 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     uint8_t temp_ = 0;         // the byte a 16-bit access leaves for its second half
     uint32_t divisor_ = 0;     // 0: the clock is stopped
     uint8_t shift_ = 0;        // the divisor's logarithm
-    uint64_t origin_ = 0;      // cycle the prescaler counts from
     uint64_t synced_ = 0;
     uint8_t external_clock_ = 0; // 6: falling edges of the T pin, 7: rising ones, 0: none
     bool comparator_captures_ = false;

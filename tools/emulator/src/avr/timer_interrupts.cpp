@@ -38,7 +38,7 @@ void Timer::reschedule() {
             ticks = ticks == 0 ? change : std::min(ticks, change);
         }
         if (ticks != 0) {
-            due = std::min(due, ((tick_index(synced_) + ticks) << shift_) + origin_);
+            due = std::min(due, prescaler_.when((tick_index(synced_) + ticks) << shift_));
         }
     }
     core_.schedule.set(slot_, due);

@@ -89,10 +89,12 @@ bool Timer::captures() const {
 
 void Timer::watch_inputs(uint64_t cycle) {
     if (number_ != 2) {
-        gpio_.watch(kInputs[number_].clock, external_clock_ != 0 ? this : nullptr, cycle);
+        gpio_.watch(kInputs[number_].clock, external_clock_ != 0 ? this : nullptr, true, cycle);
     }
     if (is_wide()) {
-        gpio_.watch(kInputs[number_].capture, captures() ? this : nullptr, cycle);
+        // A pin that floats is not listened to for a flag that nobody waits for.
+        const bool is_waited_for = ((byte(mask_register_) | told_flags_) & kFlagCapture) != 0;
+        gpio_.watch(kInputs[number_].capture, captures() ? this : nullptr, is_waited_for, cycle);
     }
 }
 
@@ -141,6 +143,7 @@ void Timer::capture(uint64_t cycle) {
 void Timer::tell_of_flags(uint8_t mask, uint64_t cycle) {
     sync(cycle);
     told_flags_ = mask;
+    watch_inputs(cycle);
     reschedule();
 }
 
@@ -151,15 +154,14 @@ void Timer::clock_stops(uint64_t cycle) {
     core_.schedule.cancel(slot_);
 }
 
-void Timer::clock_starts(uint64_t cycle, uint64_t stood) {
-    origin_ += stood;
+void Timer::clock_starts(uint64_t cycle, uint64_t) {
     synced_ = cycle;
     reschedule();
 }
 
 void Timer::state(Archive& archive) {
-    archive(counter_, driving_, temp_, divisor_, origin_, synced_, external_clock_, comparator_captures_,
-            capture_due_, told_flags_);
+    archive(counter_, driving_, temp_, divisor_, synced_, external_clock_, comparator_captures_, capture_due_,
+            told_flags_);
     if (archive.loading()) {
         set_divisor(divisor_);
         for (unsigned i = 0; i < channels(); i++) {

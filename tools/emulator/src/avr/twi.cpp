@@ -105,9 +105,6 @@ void Twi::reset(uint64_t) {
     phase_ = Phase::Idle;
     set_status(kNothing);
     byte(kTwcr) &= static_cast<uint8_t>(~(kTwint | kTwsta | kTwsto));
-    if (byte(kTwdr) == 0) {
-        byte(kTwdr) = 0xFF;
-    }
 }
 
 void Twi::clock_stops(uint64_t) {

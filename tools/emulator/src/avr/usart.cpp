@@ -215,12 +215,11 @@ void Usart::interrupt_taken(uint8_t vector) {
 void Usart::reset(uint64_t cycle) {
     core_.schedule.cancel(receive_slot_);
     core_.schedule.cancel(transmit_slot_);
-    gpio_.announce(transmit_pin_, cycle, true); // the rest of a frame under way is never sent
-    sending_ = sent_flag_ = buffer_full_ = lost_ = false;
+    gpio_.announce_port(transmit_pin_, cycle); // the rest of a frame under way is never sent
+    sending_ = sent_flag_ = buffer_full_ = lost_ = start_is_noise_ = false;
     waiting_ = 0;
     receiver_ = Receiver::Off;
     baud_origin_ = cycle;
-    byte(c()) = 0x06;
 }
 
 void Usart::clock_stops(uint64_t) {
@@ -240,7 +239,7 @@ void Usart::clock_starts(uint64_t cycle, uint64_t stood) {
 
 void Usart::state(Archive& archive) {
     archive(baud_origin_, sending_, sent_flag_, buffer_full_, buffer_, receiver_, sampling_, receive_format_,
-            fifo_, waiting_, lost_, last_data_);
+            fifo_, waiting_, lost_, last_data_, start_is_noise_);
     if (archive.loading() && waiting_ > fifo_.size()) {
         throw ArchiveError("a receiver holds more than it can");
     }

@@ -79,6 +79,7 @@ class Usart final : public Peripheral {
     unsigned waiting_ = 0;
     bool lost_ = false;
     uint8_t last_data_ = 0;
+    bool start_is_noise_ = false; // of the frame that is awaited
 };
 
 } // namespace tilenca::avr

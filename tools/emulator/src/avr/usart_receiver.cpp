@@ -12,12 +12,13 @@ constexpr unsigned kFifo = 2;
 
 void Usart::await_start(uint64_t from) {
     const Line* line = gpio_.line(receive_pin_);
-    const Line::Edge* edge = line == nullptr ? nullptr : line->falling_from(from);
+    const std::optional<Line::Edge> edge = line == nullptr ? std::nullopt : line->falling_from(from);
     receiver_ = Receiver::Idle;
     core_.schedule.cancel(receive_slot_);
-    if (edge == nullptr) {
+    if (!edge) {
         return;
     }
+    start_is_noise_ = edge->is_noise;
     sampling_ = {static_cast<double>(next_sample(edge->cycle)), static_cast<double>(sample_cycles()),
                  samples_per_bit()};
     receive_format_ = format();
@@ -28,8 +29,10 @@ void Usart::await_start(uint64_t from) {
 }
 
 void Usart::line_changed() {
-    if (receiver_ == Receiver::Idle) {
-        await_start(core_.cpu.cycle);
+    const uint64_t now = core_.cpu.cycle;
+    const bool expects_noise = start_is_noise_ && sampling_.start > static_cast<double>(now);
+    if (receiver_ == Receiver::Idle || (receiver_ != Receiver::Off && expects_noise)) {
+        await_start(now);
     }
 }
 

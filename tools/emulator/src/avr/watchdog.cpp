@@ -57,8 +57,12 @@ void Watchdog::restart(uint64_t cycle) {
     const uint8_t control = byte(kWdtcsr);
     const unsigned scale = (control & 7u) | ((control & kWdp3) != 0 ? 8u : 0u);
     const uint64_t ticks = kShortestTicks << (scale > 9 ? 9 : scale);
-    core_.schedule.set(Slot::Watchdog,
-                       is_on() ? cycle + ticks * kCyclesPerTick / core_.cpu.clock_divisor : kNever);
+    core_.schedule.set(Slot::Watchdog, is_on() ? cycle + cycles(ticks) : kNever);
+}
+
+uint64_t Watchdog::cycles(uint64_t ticks) const {
+    const double whole = static_cast<double>(ticks * kCyclesPerTick) / (1 + error_);
+    return static_cast<uint64_t>(whole) / core_.cpu.clock_divisor;
 }
 
 // In "interrupt and reset" mode a second time-out resets, if the interrupt of the first still waits.

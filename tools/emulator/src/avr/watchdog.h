@@ -17,8 +17,12 @@ class Watchdog : public Peripheral {
     std::vector<uint8_t> vectors() const override;
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
-    void state(Archive& archive) override { archive(changeable_until_, wants_reset_); }
+    void state(Archive& archive) override { archive(changeable_until_, wants_reset_, error_); }
 
+    // Its clock runs faster by that share, or slower.
+    void set_error(double error) { error_ = error; }
+    // Cycles of the CPU's clock that so many ticks of its own take.
+    uint64_t cycles(uint64_t ticks) const;
     // WDR: counts from zero again.
     void restart(uint64_t cycle);
     // Set once its time ran out with reset enabled; the chip then resets.
@@ -33,6 +37,7 @@ class Watchdog : public Peripheral {
     const Fuses& fuses_;
     uint64_t changeable_until_ = 0;
     bool wants_reset_ = false;
+    double error_ = 0;
 };
 
 } // namespace tilenca::avr

@@ -13,8 +13,9 @@ constexpr double kAheadTicks = 4096;
 
 } // namespace
 
-void HostPort::edge(avr::PinId, uint64_t cycle, bool level) {
-    receiver_.edge(clock_.to_ticks(cycle), level);
+// The bridge has a pull-up of its own.
+void HostPort::edge(avr::PinId, uint64_t cycle, bool level, bool open) {
+    receiver_.edge(clock_.to_ticks(cycle), level || open);
 }
 
 void HostPort::send_until(double end) {

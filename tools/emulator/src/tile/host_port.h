@@ -27,7 +27,7 @@ class HostPort : public avr::EdgeListener {
     void send_until(double end);
     std::deque<Byte>& received() { return receiver_.received(); }
 
-    void edge(avr::PinId pin, uint64_t cycle, bool level) override;
+    void edge(avr::PinId pin, uint64_t cycle, bool level, bool open) override;
     void state(avr::Archive& archive);
 
   private:

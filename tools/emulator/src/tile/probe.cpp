@@ -10,7 +10,8 @@ void Probe::read_bytes(double baud) {
     follows_ = baud <= 0;
 }
 
-void Probe::edge(avr::PinId, uint64_t cycle, bool level) {
+void Probe::edge(avr::PinId, uint64_t cycle, bool level, bool open) {
+    level = level || open;
     const double ticks = clock_.to_ticks(cycle);
     if (reads_bytes_) {
         receiver_.edge(ticks, level);

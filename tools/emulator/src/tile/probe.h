@@ -1,4 +1,5 @@
-// Observers of one pin: its edges with their times, and the bytes that the edges make.
+// Observers of one pin: its edges with their times, and the bytes that the edges make. Their pull-up lifts a
+// pin that floats.
 #pragma once
 
 #include "avr/gpio.h"
@@ -23,7 +24,7 @@ class Probe : public avr::EdgeListener {
     void set_follows(bool follows) { follows_ = follows; }
     bool follows() const { return follows_; }
 
-    void edge(avr::PinId pin, uint64_t cycle, bool level) override;
+    void edge(avr::PinId pin, uint64_t cycle, bool level, bool open) override;
     // All before `end` is certain.
     void settle(double end);
     std::deque<Edge>& edges() { return settled_; }

@@ -29,8 +29,8 @@ void SerialReceiver::follow(double bit_ticks) {
 
 void SerialReceiver::receive_until(double end) {
     while (line_.edges() != 0) {
-        const avr::Line::Edge* fall = line_.falling_from(static_cast<uint64_t>(std::ceil(listening_from_)));
-        if (fall == nullptr) {
+        const auto fall = line_.falling_from(static_cast<uint64_t>(std::ceil(listening_from_)));
+        if (!fall) {
             return;
         }
         const avr::Sampling sampling{static_cast<double>(fall->cycle), bit_ticks() / kSamplesPerBit,

@@ -22,7 +22,9 @@ class SerialReceiver {
     void follow(double bit_ticks);
     double bit_ticks() const { return kTicksPerSecond / baud_; }
     // A later call with an earlier time takes back what was said after it.
-    void edge(double ticks, bool level) { line_.push(static_cast<uint64_t>(std::ceil(ticks)), level); }
+    void edge(double ticks, bool level) {
+        line_.push(static_cast<uint64_t>(std::ceil(ticks)), avr::drive_of(level));
+    }
     // Reads all frames that were over by then.
     void receive_until(double end);
     std::deque<Byte>& received() { return received_; }

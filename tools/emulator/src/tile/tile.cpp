@@ -14,6 +14,7 @@ constexpr avr::PinId on_chip(board::Pin pin) {
 }
 
 constexpr unsigned kSouth = 2;
+constexpr double kAheadTicks = 64; // of the last instruction of a turn, at most
 
 // A USART's pins are facts of the chip, so any instance of it may be asked: RX, then TX.
 constexpr avr::PinId kUsartPins[4][2] = {
@@ -38,10 +39,12 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
     : clock_(clock), chip_(std::move(program), fuses),
       host_(clock_,
             [this](double ticks, bool level) {
-                chip_.push_edge(kUsartPins[board::kHostUsart][0], clock_.to_cycle(ticks), level);
+                chip_.push_edge(kUsartPins[board::kHostUsart][0], clock_.to_cycle(ticks),
+                                avr::drive_of(level));
             }),
       data_end_(data_end) {
-    chip_.gpio().attach_line(kUsartPins[board::kHostUsart][0]);
+    chip_.gpio().attach_line(kUsartPins[board::kHostUsart][0], avr::Drive::High); // by the bridge to USB
+    press_button(false); // it has a pull-up of its own
     chip_.gpio().listen(kUsartPins[board::kHostUsart][1], &host_);
     for (const board::Pin& segment : board::kSegments) {
         chip_.gpio().show(on_chip(segment));
@@ -61,7 +64,7 @@ void Tile::run_until(double end, double turn_end) {
     }
     const bool turn_ends = end == turn_end;
     if (turn_ends && cycle != 0) {
-        note_display();
+        note_display(turn_end);
         host_.follow(bit_ticks(board::kHostUsart));
     }
     host_.receive_until(end);
@@ -100,12 +103,29 @@ void Tile::execute_until(double end, uint64_t cycle) {
     }
 }
 
+// Noise in it, until the program's start-up has cleared it, would look like a heap.
+void Tile::clear_heap_pointer() {
+    if (data_end_.heap_pointer != 0) {
+        chip_.cpu().data[data_end_.heap_pointer] = chip_.cpu().data[data_end_.heap_pointer + 1] = 0;
+    }
+}
+
+void Tile::set_hardware(const avr::Hardware& hardware) {
+    chip_.set_hardware(hardware);
+    clear_heap_pointer();
+}
+
 void Tile::set_power(bool on) {
     if (on == powered_) {
         return;
     }
     powered_ = on;
-    chip_.power_on(); // which leaves all pins floating, too
+    if (on) {
+        chip_.power_on();
+    } else {
+        chip_.power_off(); // which leaves all pins floating, too
+    }
+    clear_heap_pointer();
     clock_.divide(chip_.cpu().clock_divisor, chip_.cpu().cycle);
 }
 
@@ -126,7 +146,7 @@ double Tile::bit_ticks(avr::PinId pin) {
 }
 
 Probe& Tile::add_probe(avr::PinId pin) {
-    const bool level = chip_.gpio().level(pin, chip_.cpu().cycle);
+    const bool level = chip_.gpio().drive(pin, chip_.cpu().cycle) != avr::Drive::Low;
     probes_.push_back(std::make_unique<Probe>(clock_, pin, level));
     chip_.gpio().listen(pin, probes_.back().get());
     return *probes_.back();
@@ -152,14 +172,16 @@ double Tile::wakes_at() {
     return cycle == avr::kNever ? HUGE_VAL : clock_.to_ticks(cycle);
 }
 
-void Tile::note_display() {
+void Tile::note_display(double turn_end) {
     if (chip_.gpio().shown_changes() == seen_changes_) {
         return;
     }
     seen_changes_ = chip_.gpio().shown_changes();
     if (const uint8_t now = segments(); now != shown_) {
         shown_ = now;
-        display_changes_.push_back({clock_.to_ticks(chip_.cpu().cycle), now});
+        // A chip that starts is ahead of time.
+        display_changes_.push_back(
+            {std::min(clock_.to_ticks(chip_.cpu().cycle), turn_end + kAheadTicks), now});
     }
 }
 

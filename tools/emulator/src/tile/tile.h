@@ -35,6 +35,10 @@ class Tile {
     void run_until(double end, double turn_end);
     // When the tile next does anything, in ticks.
     double wakes_at();
+    // Before it runs.
+    void set_hardware(const avr::Hardware& hardware);
+    // Whether it is switched on, and has been plugged in by then, in ticks.
+    bool is_on(double now) const { return powered_ && clock_.to_ticks(0) <= now; }
     // Off, it does nothing and drives nothing; on again, it starts as new, but for its flash and EEPROM.
     void set_power(bool on);
     bool is_powered() const { return powered_; }
@@ -64,8 +68,9 @@ class Tile {
     double bit_ticks(unsigned usart);
     void execute_until(double end, uint64_t cycle);
     uint16_t stack_floor() const;
+    void clear_heap_pointer();
     bool lit(avr::PinId pin);
-    void note_display();
+    void note_display(double turn_end);
 
     Clock clock_;
     avr::Chip chip_;
