@@ -13,8 +13,8 @@ from tilenca.base.errors import TilencaError, image_error
 from tilenca.emulator.array import Array
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.faults import Faults, FaultSpec
+from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile
-from tilenca.emulator.types import port_name
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
 from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
@@ -125,9 +125,9 @@ class Emulation:
         self.array = Array(
             elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads
         )
-        self._faults = Faults(self.array, links, settings.seed)
+        self.faults = Faults(self.array, links, settings.seed)
         for spec in settings.faults:
-            self._faults.add(spec)
+            self.faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [_Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # the firmware's own greeting, the same from every tile
@@ -152,18 +152,18 @@ class Emulation:
         Raises:
             TilencaError: a tile stopped at a fault of its program.
         """
-        for tile in self._faults.run(seconds):
+        for tile in self.faults.run(seconds):
             self._voices[tile].reports.clear()  # its sentences before the reset no longer count
-            self.switch_on_s[tile] = self._faults.restarted_s[tile]
+            self.switch_on_s[tile] = self.faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
         """The tiles' sentences since the last call, in order of time; ports are called `tile-01`, ..."""
         heard = []
         for tile, voice in zip(self.array, self._voices, strict=True):
-            for time_s, value in tile.read_serial_timed():
-                for raw, sentence in voice.reader.feed(bytes([value])):
-                    heard.append(Heard(time_s, port_name(tile.index), raw, sentence))
-                    self._note(voice, heard[-1])
+            said = heard_from(tile, voice.reader)
+            for line in said:
+                self._note(voice, line)
+            heard += said
         return sorted(heard, key=lambda line: (line.time_s, line.port))
 
     def _note(self, voice: _Voice, heard: Heard) -> None:
