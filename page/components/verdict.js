@@ -1,0 +1,62 @@
+// One sentence: what the tiles think together.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+import { known } from "../stream/address.js";
+import { byId, setText } from "./dom.js";
+
+// A sentence that stands so long is said aloud.
+const SETTLED_MS = 1200;
+
+/** @param {string} label */
+const named = (label) => (label === "-" ? "a dash" : label);
+
+/**
+ * The sentence, and the label that most tiles show.
+ * @param {Tiles} tiles
+ * @returns {{text: string, label: string, agreed: boolean}}
+ */
+export function verdictOn(tiles) {
+  const { counts, total } = tiles.count();
+  const dark = counts.get("") ?? 0;
+  counts.delete("");
+  const ranked = [...counts].sort((a, b) => b[1] - a[1]);
+  if (total === 0) {
+    const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
+    return { text: tiles.runs && tiles.time < 0.05 ? "The tiles boot" : text, label: "", agreed: false };
+  }
+  if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };
+  const [label, most] = ranked[0];
+  if (most === total) {
+    const who = total === 1 ? "One tile shows" : `All ${total} tiles show`;
+    const drawn = known(tiles.laid().map((tile) => tile.place), tiles.drawings);
+    const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
+    return { text: `${who} ${named(label)}${but}`, label, agreed: true };
+  }
+  const waiting = dark ? `, ${dark} ${dark === 1 ? "boots" : "boot"}` : "";
+  return { text: `${most} of ${total} show ${named(label)}${waiting}`, label, agreed: false };
+}
+
+export class Verdict {
+  constructor() {
+    this.line = byId("verdict");
+    this.clock = byId("clock");
+    this.said = "";
+    this.text = "";
+    this.since = 0;
+  }
+
+  /** @param {Tiles} tiles @param {number} now */
+  update(tiles, now) {
+    const { text, agreed } = verdictOn(tiles);
+    if (text !== this.text) {
+      this.text = text;
+      this.since = now;
+      setText(this.line, text);
+      this.line.classList.toggle("agreed", agreed);
+    } else if (text !== this.said && now - this.since > SETTLED_MS) {
+      this.said = text;
+      setText(byId("announce"), text);
+    }
+    setText(this.clock, `${tiles.time.toFixed(tiles.pace.speed && tiles.pace.speed < 0.02 ? 4 : 2)} s`);
+  }
+}
