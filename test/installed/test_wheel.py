@@ -82,6 +82,7 @@ def test_it_carries_the_data_and_nothing_by_the_way(wheel: Path) -> None:
     for part in ("include", "src"):
         files = (path for path in (paths.FIRMWARE / part).rglob("*") if path.is_file())
         checkout |= {str(path.relative_to(paths.ROOT)) for path in files}
+    checkout |= {str(path.relative_to(paths.ROOT)) for path in paths.PAGE.rglob("*") if path.is_file()}
     image = {"image/firmware.elf", "image/firmware.hex"}
     data = {name.removeprefix("tilenca/data/") for name in carried if name.startswith("tilenca/data/")}
     assert data == checkout | image | {"platformio.ini"}

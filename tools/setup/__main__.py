@@ -26,7 +26,7 @@ INCLUDED = {"train": ["demo"], "test": ["train"], "docs": ["train"], "check": ["
 # Debian packages by level. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {
     "demo": ["g++", "make", "cmake", "ninja-build", "avrdude"],
-    "test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"],
+    "test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev", *native.browser_packages()],
 }
 NEXT = {
     "demo": "make demo",
