@@ -9,7 +9,7 @@ const WINDOW_S = 24;
 const STEPS = [1, 2, 5];
 const MARKS = 13; // pixels for the marks below the bands
 const AXIS = 17;
-const DRAW_MS = 45;
+const DRAW_MS = 90;
 
 /** The distance of lines at a time axis: a round one. @param {number} span @param {number} most */
 export function roundStep(span, most) {

@@ -52,7 +52,7 @@ export class Tiles {
     this.mostPlace = 0;
     this.stepS = 0.02;
     this.time = 0;
-    this.pace = { speed: 1, paused: true, share: 1 };
+    this.pace = { speed: 1, paused: false, share: 1 };
     this.seed = 0;
     this.runs = 0;
     this.startTiles = 0;
