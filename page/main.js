@@ -104,6 +104,7 @@ function open(wanted) {
 
 /** Notes what lies on the board now, in `start` and in the address. */
 function remember() {
+  checkModel();
   const laid = tiles.laid();
   if (!start || !laid.length) return;
   start.cells = laid.map((tile) => tile.place);
@@ -127,13 +128,13 @@ function show(events) {
   if (tiles.refused) {
     notice.say(tiles.refused);
     tiles.refused = "";
+    if (tiles.runs === 0 && start?.faults.length) open((start = { ...start, faults: [] }));
   }
   board.update(now);
   inspector.update();
   bar.update();
   verdict.update(tiles, now);
   agreement.update(now);
-  checkModel();
 }
 
 /** Says so where the address was made with another model. */

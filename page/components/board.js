@@ -42,7 +42,7 @@ export class Board {
         this.cables.isStale = true;
       },
     });
-    root.append(this.cables.canvas);
+    root.append(...this.cables.canvases);
     root.addEventListener("keydown", (event) => this.key(event));
     root.addEventListener("click", (event) => this.click(event));
     root.addEventListener("focusin", (event) => this.focused(event));

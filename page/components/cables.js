@@ -19,9 +19,12 @@ const START = 0.34;
 
 export class Cables {
   constructor() {
-    this.canvas = element("canvas", { class: "cables", "aria-hidden": "true" });
-    /** @type {CanvasRenderingContext2D} */
-    this.pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    // What lies still is drawn seldom, what flies with every frame.
+    this.canvases = ["cables", "cables flying"].map((name) => element("canvas", { class: name, "aria-hidden": "true" }));
+    const [still, air] = this.canvases.map((canvas) => canvas.getContext("2d"));
+    this.still = /** @type {CanvasRenderingContext2D} */ (still);
+    this.air = /** @type {CanvasRenderingContext2D} */ (air);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (this.isStale = true));
     /** @type {Flight[]} */
     this.flights = [];
     this.isStale = true;
@@ -35,9 +38,11 @@ export class Cables {
   /** @param {number} width @param {number} height */
   resize(width, height) {
     const ratio = Math.min(devicePixelRatio || 1, 2);
-    this.canvas.width = Math.round(width * ratio);
-    this.canvas.height = Math.round(height * ratio);
-    this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    for (const pen of [this.still, this.air]) {
+      pen.canvas.width = Math.round(width * ratio);
+      pen.canvas.height = Math.round(height * ratio);
+      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    }
     this.isStale = true;
   }
 
@@ -58,13 +63,20 @@ export class Cables {
   /** @param {Tiles} tiles @param {View} view @param {number} now */
   draw(tiles, view, now) {
     this.flights = this.flights.filter((flight) => now - flight.from < flight.ms);
+    if (this.isStale) {
+      this.still.clearRect(0, 0, this.still.canvas.width, this.still.canvas.height);
+      this.drawCables(tiles, view);
+    }
     const isFlying = this.flights.length > 0 || this.stroke.length > 1;
-    if (!this.isStale && !isFlying && !this.wasFlying) return;
+    if (isFlying || this.wasFlying || this.isStale) this.drawFlights(view, now);
     this.wasFlying = isFlying;
     this.isStale = false;
-    const { pen } = this;
-    pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    this.drawCables(tiles, view);
+  }
+
+  /** @param {View} view @param {number} now */
+  drawFlights(view, now) {
+    const pen = this.air;
+    pen.clearRect(0, 0, pen.canvas.width, pen.canvas.height);
     const length = view.size * (1 - 2 * START);
     for (const { x, y, dx, dy, from, ms, colour } of this.flights) {
       const way = view.size * START + (length * (now - from)) / ms;
@@ -82,8 +94,8 @@ export class Cables {
 
   /** @param {Tiles} tiles @param {View} view */
   drawCables(tiles, view) {
-    const { pen } = this;
-    const style = getComputedStyle(this.canvas);
+    const pen = this.still;
+    const style = getComputedStyle(pen.canvas);
     const gap = view.size * (0.5 - EDGE);
     const width = view.size * 0.2;
     for (const tile of tiles.laid()) {
@@ -124,8 +136,8 @@ export class Cables {
 
   drawStroke() {
     if (this.stroke.length < 2) return;
-    const { pen } = this;
-    pen.strokeStyle = getComputedStyle(this.canvas).getPropertyValue("--cut");
+    const pen = this.air;
+    pen.strokeStyle = getComputedStyle(pen.canvas).getPropertyValue("--cut");
     pen.lineWidth = 2;
     pen.lineCap = pen.lineJoin = "round";
     pen.beginPath();

@@ -22,7 +22,7 @@ export function verdictOn(tiles) {
   const ranked = [...counts].sort((a, b) => b[1] - a[1]);
   if (total === 0) {
     const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
-    return { text: tiles.runs && tiles.time < 0.05 ? "The tiles boot" : text, label: "", agreed: false };
+    return { text: tiles.startTiles && tiles.samples.length < 2 ? "The tiles boot" : text, label: "", agreed: false };
   }
   if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };
   const [label, most] = ranked[0];
@@ -43,19 +43,22 @@ export class Verdict {
     this.said = "";
     this.text = "";
     this.since = 0;
+    this.version = -1;
   }
 
   /** @param {Tiles} tiles @param {number} now */
   update(tiles, now) {
-    const { text, agreed } = verdictOn(tiles);
-    if (text !== this.text) {
+    if (tiles.version !== this.version) {
+      this.version = tiles.version;
+      const { text, agreed } = verdictOn(tiles);
+      if (text !== this.text) this.since = now;
       this.text = text;
-      this.since = now;
       setText(this.line, text);
       this.line.classList.toggle("agreed", agreed);
-    } else if (text !== this.said && now - this.since > SETTLED_MS) {
-      this.said = text;
-      setText(byId("announce"), text);
+    }
+    if (this.text !== this.said && now - this.since > SETTLED_MS) {
+      this.said = this.text;
+      setText(byId("announce"), this.text);
     }
     setText(this.clock, `${tiles.time.toFixed(tiles.pace.speed && tiles.pace.speed < 0.02 ? 4 : 2)} s`);
   }

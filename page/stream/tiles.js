@@ -42,6 +42,8 @@ export class Tiles {
   constructor() {
     /** @type {Map<string, Tile>} */
     this.byPort = new Map();
+    /** The tiles on the board by their places, "row,col". @type {Map<string, Tile>} */
+    this.byPlace = new Map();
     /** Ends of cut cables, "port side". @type {Set<string>} */
     this.cut = new Set();
     /** @type {Look[]} */
@@ -66,6 +68,8 @@ export class Tiles {
     /** Ports whose picture is out of date. @type {Set<string>} */
     this.dirty = new Set();
     this.isMoved = false;
+    /** Grows with everything that a verdict on the tiles depends on. */
+    this.version = 0;
     this.refused = "";
   }
 
@@ -99,6 +103,7 @@ export class Tiles {
   /** @param {number} seed @param {number} tiles */
   begin(seed, tiles) {
     this.byPort.clear();
+    this.byPlace.clear();
     this.cut.clear();
     this.changes = [];
     this.changeCount = 0;
@@ -108,6 +113,7 @@ export class Tiles {
     this.seed = seed;
     this.startTiles = tiles;
     this.runs++;
+    this.version++;
     this.isMoved = true;
   }
 
@@ -122,12 +128,12 @@ export class Tiles {
   takeOfTile(event, tile) {
     this.dirty.add(tile.port);
     if (event.place !== undefined) {
-      tile.place = event.place;
-      this.isMoved = true;
+      this.lay(tile, event.place);
       if (!event.place) this.show(tile, event.time, "");
     } else if (event.open !== undefined) {
       tile.powered = event.open;
       tile.countSide = -1;
+      this.version++;
       this.isMoved = true;
       if (!event.open) {
         this.show(tile, event.time, "");
@@ -145,6 +151,15 @@ export class Tiles {
     } else if (event.raw !== undefined) {
       this.takeSentence(tile, event.time, event.raw);
     }
+  }
+
+  /** @param {Tile} tile @param {Place | null} place */
+  lay(tile, place) {
+    if (tile.place && this.byPlace.get(tile.place.join()) === tile) this.byPlace.delete(tile.place.join());
+    if (place) this.byPlace.set(place.join(), tile);
+    tile.place = place;
+    this.version++;
+    this.isMoved = true;
   }
 
   /** @param {Tile} tile @param {number} side @param {string} hex */
@@ -210,6 +225,7 @@ export class Tiles {
     const same = last && last.total === total && last.counts.size === counts.size &&
       [...counts].every(([label, count]) => last.counts.get(label) === count);
     if (same) return;
+    this.version++;
     this.samples.push({ time: this.time, counts, total });
     if (this.samples.length > MOST_KEPT) this.samples.splice(0, MOST_KEPT / 4);
   }
@@ -235,10 +251,7 @@ export class Tiles {
 
   /** @param {number} row @param {number} col @returns {Tile | undefined} */
   at(row, col) {
-    for (const tile of this.byPort.values()) {
-      if (tile.place && tile.place[0] === row && tile.place[1] === col) return tile;
-    }
-    return undefined;
+    return this.byPlace.get(`${row},${col}`);
   }
 
   /** @param {Tile} tile @param {number} side */

@@ -119,6 +119,7 @@ def test_time_stops_steps_and_goes_on(visit: Visit, server: PageServer) -> None:
     assert clock() == 0.5
     visit.page.get_by_role("button", name="One update").click()
     visit.wait_until("document.getElementById('clock').textContent === '0.52 s'")
+    visit.page.locator("h1").click()  # Space on a button presses that
     visit.page.keyboard.press("Space")
     visit.page.get_by_role("button", name="Pause").wait_for()
     visit.page.get_by_label("Speed").fill("6")
@@ -143,7 +144,7 @@ def last_said(received: list[str]) -> dict[str, str]:
 def test_an_address_gives_the_same_run_again_to_the_byte(
     visit: Visit, server: PageServer, tmp_path: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    start = "?shape=digits/5&seed=42&speed=0.7&spread=0.2&until=0.8&fault=loss=0.02&fault=cut@3S&fault=off@8"
+    start = "?shape=digits/5&seed=42&speed=0.7&spread=0.2&until=0.8&fault=loss=0.02&fault=cut@2E&fault=off@8"
     runs = []
     visit.page.goto(server.url + start)
     for _ in range(2):
@@ -154,7 +155,7 @@ def test_an_address_gives_the_same_run_again_to_the_byte(
         visit.page.goto(visit.page.url)  # what the address has become by then
     record = tmp_path / "said.jsonl"
     words = (
-        "--shape 5 --seed 42 --boot-spread 0.2 --seconds 0.8 --fault loss=0.02 --fault cut@3S --fault off@8"
+        "--shape 5 --seed 42 --boot-spread 0.2 --seconds 0.8 --fault loss=0.02 --fault cut@2E --fault off@8"
     )
     cli.main(["emulate", *words.split(), "--elf", str(firmware), "--record", str(record)])
     capsys.readouterr()
@@ -165,6 +166,14 @@ def test_an_address_gives_the_same_run_again_to_the_byte(
             recorded[event["port"]] = event["raw"]
     assert len(recorded) > 8
     assert runs == [recorded, recorded]
+
+
+def test_an_address_with_a_fault_that_cannot_be_says_so_and_runs_without(
+    visit: Visit, server: PageServer
+) -> None:
+    visit.page.goto(f"{server.url}?draw=11&spread=0&fault=off@77")
+    visit.page.locator("#notice", has_text="no tile '77'").wait_for()
+    visit.wait_for_verdict("All 2 tiles show")
 
 
 def test_surprises_happen(visit: Visit, server: PageServer) -> None:
