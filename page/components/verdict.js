@@ -22,7 +22,8 @@ export function verdictOn(tiles) {
   const ranked = [...counts].sort((a, b) => b[1] - a[1]);
   if (total === 0) {
     const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
-    return { text: tiles.startTiles && tiles.samples.length < 2 ? "The tiles boot" : text, label: "", agreed: false };
+    const boot = tiles.laid().length > 0 && tiles.changes.length === 0;
+    return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
   }
   if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };
   const [label, most] = ranked[0];

@@ -75,8 +75,11 @@ export class Tiles {
 
   /** Adds events. @param {StreamEvent[]} events */
   take(events) {
-    for (const event of events) this.takeOne(event);
-    this.sample();
+    for (const event of events) {
+      const before = this.version;
+      this.takeOne(event);
+      if (this.version !== before) this.sample(event.time);
+    }
   }
 
   /** @param {StreamEvent} event */
@@ -216,17 +219,17 @@ export class Tiles {
     if (tile.label !== "" && label !== "") this.changeCount++;
     if (this.changes.length > MOST_KEPT) this.changes.splice(0, MOST_KEPT / 4);
     tile.label = label;
+    this.version++;
   }
 
-  /** Notes how many tiles show what, where that has changed. */
-  sample() {
+  /** Notes how many tiles show what from a time on, where that has changed. @param {number} time */
+  sample(time) {
     const { counts, total } = this.count();
     const last = this.samples.at(-1);
     const same = last && last.total === total && last.counts.size === counts.size &&
       [...counts].every(([label, count]) => last.counts.get(label) === count);
     if (same) return;
-    this.version++;
-    this.samples.push({ time: this.time, counts, total });
+    this.samples.push({ time, counts, total });
     if (this.samples.length > MOST_KEPT) this.samples.splice(0, MOST_KEPT / 4);
   }
 

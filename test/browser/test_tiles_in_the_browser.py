@@ -129,29 +129,17 @@ def test_time_stops_steps_and_goes_on(visit: Visit, server: PageServer) -> None:
     visit.wait_until("parseFloat(document.getElementById('clock').textContent) < 3")
 
 
-def last_said(received: list[str]) -> dict[str, str]:
-    """The last `$TILE` of each port in what came over the socket."""
-    said: dict[str, str] = {}
-    for message in received:
-        for event in json.loads(message)["events"]:
-            if "run" in event:
-                said.clear()
-            if str(event.get("raw", "")).startswith("$TILE"):
-                said[event["port"]] = event["raw"]
-    return said
-
-
 def test_an_address_gives_the_same_run_again_to_the_byte(
     visit: Visit, server: PageServer, tmp_path: Path, firmware: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     start = "?shape=digits/5&seed=42&speed=0.7&spread=0.2&until=0.8&fault=loss=0.02&fault=cut@2E&fault=off@8"
     runs = []
+    visit.record_stream()
     visit.page.goto(server.url + start)
     for _ in range(2):
         visit.page.get_by_role("button", name="Go on").wait_for()
         visit.wait_until("location.search.includes('model=')")
-        runs.append(last_said(visit.received))
-        visit.received.clear()
+        runs.append(visit.last_said())
         visit.page.goto(visit.page.url)  # what the address has become by then
     record = tmp_path / "said.jsonl"
     words = (
@@ -177,21 +165,18 @@ def test_an_address_with_a_fault_that_cannot_be_says_so_and_runs_without(
 
 
 def test_surprises_happen(visit: Visit, server: PageServer) -> None:
+    visit.record_stream()
     visit.page.goto(server.url + QUICK)
     visit.wait_for_verdict("All 16 tiles show 8")
-    sent: list[str] = []
-    visit.page.on("websocket", lambda it: it.on("framesent", lambda data: sent.append(str(data))))
-    visit.page.reload()
-    visit.wait_for_verdict("All 16 tiles show 8")
-    for _ in range(5):
+    for _ in range(6):
         visit.page.get_by_role("button", name="Surprise me").click()
-        visit.page.wait_for_timeout(50)
-    done = {json.loads(text)["do"] for text in sent} - {"seen", "open", "rest"}
+    done = visit.sent() - {"seen", "open", "rest"}
     assert done
     assert done <= {"arrange", "pull", "power", "cut"}
 
 
 def test_it_comes_back_when_the_server_does(visit: Visit, firmware: Path) -> None:
+    visit.forgiven = ("WebSocket connection",)  # while there is no server
     with page_server(firmware) as first:
         host, port = first.address
         visit.page.goto(f"{first.url}?shape=digits/7&speed=0.5&spread=0.1")
@@ -201,7 +186,6 @@ def test_it_comes_back_when_the_server_does(visit: Visit, firmware: Path) -> Non
     with page_server(firmware, listen=f"{host}:{port}"):
         visit.page.locator("#notice").wait_for(state="hidden")
         visit.wait_for_verdict("All 9 tiles show 7")
-    visit.complaints = [text for text in visit.complaints if "WebSocket" not in text]
 
 
 def test_another_site_gets_no_connection(browser: Browser, server: PageServer) -> None:

@@ -12,7 +12,7 @@ from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "docs" / "images" / "page.png"
-RUN = "?shape=digits/8&seed=1&speed=0.1&until=0.47"
+RUN = "?shape=digits/8&seed=1&speed=0.1&until=0.43"
 BROWSER = "chromium"
 
 
