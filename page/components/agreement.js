@@ -27,6 +27,16 @@ function timeText(seconds, step) {
   return `${seconds.toFixed(digits)} s`;
 }
 
+/** @typedef {{text: string, line: string, band: string, font: string}} Ink */
+
+/** @param {Element} canvas @returns {Ink} */
+function inkOf(canvas) {
+  const style = getComputedStyle(canvas);
+  /** @param {string} name */
+  const value = (name) => style.getPropertyValue(name);
+  return { text: value("--ink-soft"), line: value("--line"), band: value("--dark-band"), font: style.font };
+}
+
 export class Agreement {
   /** @param {Tiles} tiles */
   constructor(tiles) {
@@ -37,7 +47,14 @@ export class Agreement {
     this.drawn = 0;
     this.spanS = 0;
     this.lastRate = 1;
-    new ResizeObserver(() => (this.drawn = 0)).observe(this.canvas);
+    /** Colours and font of the style sheet, until they may have changed. @type {Ink | null} */
+    this.ink = null;
+    const forget = () => {
+      this.ink = null;
+      this.drawn = 0;
+    };
+    new ResizeObserver(forget).observe(this.canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forget);
   }
 
   /** @param {number} now */
@@ -65,7 +82,7 @@ export class Agreement {
     }
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
-    const style = getComputedStyle(canvas);
+    const ink = (this.ink ??= inkOf(canvas));
     const rate = tiles.pace.speed || Math.max(1, tiles.pace.share);
     if (!tiles.pace.paused) this.lastRate = rate;
     this.spanS = WINDOW_S * this.lastRate;
@@ -75,12 +92,12 @@ export class Agreement {
     /** @param {number} time */
     const x = (time) => ((time - begin) / span) * width;
     const top = height - MARKS - AXIS;
-    this.drawBands(x, top, begin, style);
+    this.drawBands(x, top, begin, ink.band);
     this.drawMarks(x, top, begin);
-    pen.fillStyle = style.getPropertyValue("--ink-soft");
-    pen.strokeStyle = style.getPropertyValue("--line");
+    pen.fillStyle = ink.text;
+    pen.strokeStyle = ink.line;
     pen.lineWidth = 1;
-    pen.font = style.font;
+    pen.font = ink.font;
     pen.textBaseline = "bottom";
     const step = roundStep(span, Math.max(2, width / 110));
     for (let time = Math.ceil(begin / step) * step; x(time) < width - 8; time += step) {
@@ -94,8 +111,8 @@ export class Agreement {
     }
   }
 
-  /** @param {(time: number) => number} x @param {number} height @param {number} begin @param {CSSStyleDeclaration} style */
-  drawBands(x, height, begin, style) {
+  /** @param {(time: number) => number} x @param {number} height @param {number} begin @param {string} dark */
+  drawBands(x, height, begin, dark) {
     const { pen, tiles } = this;
     const { samples } = tiles;
     let first = samples.length - 1;
@@ -115,7 +132,7 @@ export class Agreement {
         y -= tall;
       }
       if (y > 0.5) {
-        pen.fillStyle = style.getPropertyValue("--dark-band");
+        pen.fillStyle = dark;
         pen.fillRect(from, 0, to - from, y);
       }
     }

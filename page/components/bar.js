@@ -7,6 +7,9 @@ import { element, icon, setText } from "./dom.js";
 /** Speeds to choose from, times real time; 0: as fast as it can. */
 export const SPEEDS = [0.001, 0.01, 0.03, 0.1, 0.3, 1, 0];
 
+// Percent; a frame has thirty bytes and is lost with one of them, so that more is no different from a cut cable.
+const MOST_LOSS = 10;
+
 const ICONS = {
   hand: "M8 13V5.5a1.5 1.5 0 0 1 3 0V12m0-1V4a1.5 1.5 0 0 1 3 0v8m0-6.500a1.500 1.500 0 0 1 3 0V15a6 6 0 0 1-6 6 6 6 0 0 1-5-3l-3-5a1.500 1.500 0 0 1 2.500-1.600L8 14",
   pencil: "M4 20l1-5L16 4l4 4L9 19l-5 1M14 6l4 4",
@@ -74,7 +77,7 @@ export class Bar {
     });
     this.speed = element("output", { for: "speed", class: "speed-words" });
     this.noise = element("input", {
-      type: "range", min: 0, max: 60, step: 5, value: 0, id: "noise", "aria-label": "Lost bytes",
+      type: "range", min: 0, max: MOST_LOSS, step: 0.5, value: 0, id: "noise", "aria-label": "Lost bytes",
       oninput: () => deeds.noise(Number(this.noise.value) / 100),
     });
     this.noiseWords = element("output", { for: "noise", class: "speed-words" });
@@ -107,8 +110,9 @@ export class Bar {
 
   /** @param {number} loss */
   showNoise(loss) {
-    this.noise.value = String(Math.round(loss * 100));
-    const words = loss > 0 ? `${Math.round(loss * 100)} %` : "none";
+    const percent = Math.round(loss * 1000) / 10;
+    this.noise.value = String(percent);
+    const words = loss > 0 ? `${percent} %` : "none";
     setText(this.noiseWords, words);
     this.noise.setAttribute("aria-valuetext", words);
   }
@@ -122,11 +126,11 @@ export class Bar {
       this.stepButton.disabled = !paused;
     }
     if (document.activeElement !== this.slider) this.slider.value = String(nearest(speed));
-    const behind = share < 0.9 && speed > 0 && !paused ? `, ${Math.round(share * 100)} % of it reached` : "";
-    const words = `${speedWords(speed)}${behind}`;
-    if (this.speed.textContent !== words) {
-      setText(this.speed, words);
-      this.slider.setAttribute("aria-valuetext", words);
+    // A machine that cannot keep up says what share of the speed it reaches.
+    const isBehind = share < 0.9 && speed > 0 && !paused;
+    setText(this.speed, isBehind ? `${speedWords(speed)} (${Math.round(share * 100)} %)` : speedWords(speed));
+    if (this.slider.getAttribute("aria-valuetext") !== speedWords(speed)) {
+      this.slider.setAttribute("aria-valuetext", speedWords(speed));
     }
   }
 }

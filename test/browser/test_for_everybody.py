@@ -14,7 +14,7 @@ LOOK = """() => {
   const cut = [...document.querySelectorAll("button, h1, h2, h3, p, output, dd, th, td")].filter(seen)
     .filter((one) => !one.closest(".board") && one.clientWidth > 0 && one.scrollWidth > one.clientWidth + 1)
     .map((one) => one.textContent);
-  const boxes = [...document.querySelectorAll(".top > *, .stage, .bar > *, .agreement > *, .side")]
+  const boxes = [...document.querySelectorAll(".top > *, .stage, .group > *, .agreement > *, .side")]
     .filter(seen)
     .map((one) => [one.className || one.id || one.tagName, one.getBoundingClientRect()]);
   const over = [];
@@ -29,7 +29,8 @@ LOOK = """() => {
     return box.left < board.left || box.right > board.right || box.top < board.top
       || box.bottom > board.bottom;
   }).length;
-  return { wide, cut, over, outside, size: document.querySelector(".tile").offsetWidth };
+  const tall = document.querySelector(".verdict").offsetHeight > 50;
+  return { wide, cut, over, outside, tall, size: document.querySelector(".tile").offsetWidth };
 }"""
 
 
@@ -45,8 +46,8 @@ def test_nothing_is_cut_off_or_lies_over_something_else(
         if selected:
             visit.page.locator("[data-port=tile-06]").click()
         seen = visit.page.evaluate(LOOK)
-        assert {key: seen[key] for key in ("wide", "cut", "over", "outside")} == {
-            "wide": 0, "cut": [], "over": [], "outside": 0,
+        assert {key: seen[key] for key in ("wide", "cut", "over", "outside", "tall")} == {
+            "wide": 0, "cut": [], "over": [], "outside": 0, "tall": False,
         }  # fmt: skip
         assert seen["size"] >= 48  # a finger can meet it
         found = Axe().run(visit.page)
