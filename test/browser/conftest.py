@@ -25,9 +25,8 @@ def server(browser: Browser, firmware: Path) -> Iterator[PageServer]:
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Visit]:
     """On a laptop. Nothing may go wrong behind the scenes, and nothing may be asked of anybody else."""
-    visit = new_visit(browser)
-    yield visit
+    with new_visit(browser) as visit:
+        yield visit
     addresses = {url.split("/")[2].split(":")[0] for url in visit.requests if url.startswith("http")}
-    visit.page.context.close()
     assert visit.complaints == []
     assert addresses <= {"127.0.0.1"}

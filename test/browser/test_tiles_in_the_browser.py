@@ -189,15 +189,14 @@ def test_it_comes_back_when_the_server_does(visit: Visit, firmware: Path) -> Non
 
 
 def test_another_site_gets_no_connection(browser: Browser, server: PageServer) -> None:
-    page = new_visit(browser).page
-    page.goto("about:blank")
-    outcome = page.evaluate(
-        """(url) => new Promise((resolve) => {
-          const socket = new WebSocket(url);
-          socket.onopen = () => resolve("open");
-          socket.onclose = () => resolve("closed");
-        })""",
-        server.url.replace("http", "ws") + "stream",
-    )
-    page.context.close()
+    with new_visit(browser) as visit:
+        visit.page.goto("about:blank")
+        outcome = visit.page.evaluate(
+            """(url) => new Promise((resolve) => {
+              const socket = new WebSocket(url);
+              socket.onopen = () => resolve("open");
+              socket.onclose = () => resolve("closed");
+            })""",
+            server.url.replace("http", "ws") + "stream",
+        )
     assert outcome == "closed"

@@ -134,12 +134,16 @@ class Visit:
         self.page.mouse.up()
 
 
-def new_visit(browser: Browser, size: str = "laptop", scheme: str = "light") -> Visit:
-    """A fresh page without a past."""
+@contextmanager
+def new_visit(browser: Browser, size: str = "laptop", scheme: str = "light") -> Iterator[Visit]:
+    """A fresh page without a past; it is closed however the block ends, since a server has few places."""
     width, height = SIZES[size]
     context = browser.new_context(
         viewport={"width": width, "height": height},
         color_scheme="dark" if scheme == "dark" else "light",
         has_touch=size == "phone",
     )
-    return Visit(context.new_page())
+    try:
+        yield Visit(context.new_page())
+    finally:
+        context.close()
