@@ -46,6 +46,7 @@ class Recipe:
         trials: drawings of the files to try with each kind of beginning, to mine hard examples: those that do
             not agree go into the perturbed pool.
         stability_penalty: weight of the squared change of converged states over one iteration.
+        loss_limit: the most that one cell can add to the loss, in units of the squared error; 0: any.
         fire_rate: least and most share of tiles that update in a tick, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
         ticks_per_period: least and most ticks that one period of such a clock takes.
@@ -97,6 +98,7 @@ class Recipe:
     refresh_steps: tuple[int, int] = (50, 3000)
     trials: int = 300
     stability_penalty: float = 0.0
+    loss_limit: float = 0.0
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
     ticks_per_period: tuple[float, float] = (2.0, 4.0)
@@ -175,6 +177,9 @@ RECIPES: dict[str, Recipe] = {
         unknown=0.24,
         unlabelled=0.04,
         ramp=(0.02, 0.15),
+        loss_limit=1.0,
+        failure_weighting=0.3,
+        refresh_every=1000,
         check_every=20_000,
     ),
     # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
