@@ -79,6 +79,7 @@ imports: setup-check ## check which room may import from which
 
 types: setup-check
 	@.venv/bin/mypy
+	@$(TOOL) page.check
 
 budgets: setup-check ## compare flash, SRAM, stack and cycles of the firmware with tools/firmware/budgets.toml
 	@$(PIO) run -s -e $(ENV)

@@ -27,6 +27,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "simulate": ("tilenca.commands.simulate", "run drawings on the firmware's core, many runs at once"),
     "export": ("tilenca.commands.export", "render a model into the firmware's C++ files"),
     "emulate": ("tilenca.commands.emulate", "run the firmware image on one emulated board per tile"),
+    "page": (
+        "tilenca.commands.page",
+        "show tiles in the browser, where a hand can rearrange them while they run",
+    ),
     "devices": ("tilenca.commands.devices", "list the tiles found on USB"),
     "flash": ("tilenca.commands.flash", "build the firmware and program all tiles side by side"),
     "set": ("tilenca.commands.set", "set something in one, some or all tiles"),

@@ -21,6 +21,7 @@ from release.wheel import make
 from setup import native
 from support import objects
 from support.empty_environment import EmptyEnvironment
+from support.web_socket import WebSocketClient, get
 from tilenca import __version__
 from tilenca.base import paths
 
@@ -82,6 +83,7 @@ def test_it_carries_the_data_and_nothing_by_the_way(wheel: Path) -> None:
     for part in ("include", "src"):
         files = (path for path in (paths.FIRMWARE / part).rglob("*") if path.is_file())
         checkout |= {str(path.relative_to(paths.ROOT)) for path in files}
+    checkout |= {str(path.relative_to(paths.ROOT)) for path in paths.PAGE.rglob("*") if path.is_file()}
     image = {"image/firmware.elf", "image/firmware.hex"}
     data = {name.removeprefix("tilenca/data/") for name in carried if name.startswith("tilenca/data/")}
     assert data == checkout | image | {"platformio.ini"}
@@ -168,6 +170,7 @@ def test_what_is_not_there_is_one_line_with_its_remedy(plain: EmptyEnvironment, 
         (["plot", "--film", "4.png", "--shape", "4"], 2, "run: pip install 'tilenca[plot]'"),
         (["train", "--out", "mine"], 2, "run: pip install 'tilenca[train]'"),
         (["evaluate", "--engine", "float"], 2, "run: pip install 'tilenca[train]'"),
+        (["page", "--no-open"], 2, "run: pip install 'tilenca[page]'"),
         (["export"], 4, "make one: tilenca new DIR, then cd DIR"),
         (["devices", "--port", "none-*"], 3, ""),
         (["emulate", "--elf", "none.elf"], 2, "run `pio run`, or give --elf"),
@@ -205,6 +208,31 @@ def test_the_built_in_image_is_flashed_without_a_project(plain: EmptyEnvironment
         assert str(plain.venv) in done.stderr  # the image's place
         done = plain.run(tmp_path, *flash, environment=with_avrdude)
         assert [tile["result"] for tile in document(done)["tiles"]] == ["skipped"], done.stderr
+    finally:
+        serving.send_signal(signal.SIGTERM)
+        serving.communicate(timeout=60)
+
+
+def test_with_its_extra_it_serves_the_page(wheel: Path, tmp_path: Path) -> None:
+    paged = EmptyEnvironment(tmp_path / "paged", wheel, requirements(wheel, "page"))
+    serving = subprocess.Popen(
+        [paged.venv / "bin" / "tilenca", "page", "--no-open", "--listen", "127.0.0.1:0"],
+        cwd=tmp_path,
+        env=paged.environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert serving.stdout is not None
+        host, _, port = serving.stdout.readline().strip().removeprefix("http://").rstrip("/").partition(":")
+        address = (host, int(port))
+        assert get(address, "/main.js").read() == (paths.PAGE / "main.js").read_bytes()
+        client = WebSocketClient(address)
+        first = client.watch("stream")
+        assert first["drawings"][0]["name"] == "digits/0"
+        client.send({"do": "open", "cells": [[0, 0]], "spread_s": 0})
+        assert client.watch("raw")["raw"].startswith("$HELLO")
+        client.close()
     finally:
         serving.send_signal(signal.SIGTERM)
         serving.communicate(timeout=60)

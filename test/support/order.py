@@ -5,6 +5,8 @@ from pathlib import Path
 # Files with long tests, the longest first.
 LONG = (
     "emulator/test_hardship.py",
+    "browser/test_tiles_in_the_browser.py",
+    "browser/test_for_everybody.py",
     "fleet/test_fleet.py",
     "docs/test_code_blocks.py",
     "docs/test_fleet_story.py",

@@ -1,5 +1,6 @@
 """The set-up notices what is done and what is not, and says what to do where it cannot help itself."""
 
+import json
 import os
 import re
 import subprocess
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from setup import __main__ as setup_main
-from setup import command, python, web
+from setup import command, native, python, web
 from setup.__main__ import LEVELS, NEXT, levels_up_to
 from setup.command import ROOT, SetupError, Stamp, digest, run
 
@@ -303,3 +304,25 @@ def test_apt_asks_its_mirrors_once_and_not_again_at_once(tmp_path: Path) -> None
     for _ in range(2):
         assert run_apt(tmp_path, "no-such-package", **programs).returncode == 0
     assert (tmp_path / "calls").read_text(encoding="utf-8").split() == ["update", "install", "install"]
+
+
+@pytest.mark.parametrize(
+    ("told", "packages"),
+    [
+        ('ID=debian\nVERSION_ID="12"\n', ["chromium", "fonts-dejavu-core"]),
+        ("ID=ubuntu\nID_LIKE=debian\n", []),
+        (None, []),
+    ],
+)
+def test_a_browser_comes_from_debian_only(told: str | None, packages: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "os-release"
+    if told is not None:
+        path.write_text(told, encoding="utf-8")
+    assert native.browser_packages(path) == packages
+
+
+def test_the_checker_of_the_page_is_pinned_by_its_content_and_names_no_place() -> None:
+    lock = json.loads((ROOT / "tools" / "page" / "package-lock.json").read_text(encoding="utf-8"))
+    packages = {name: about for name, about in lock["packages"].items() if name}
+    assert packages
+    assert all(about["integrity"] and "resolved" not in about for about in packages.values())

@@ -33,7 +33,7 @@ INCLUDED = {
 # Debian packages by level. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {
     "demo": ["g++", "make", "cmake", "ninja-build", "avrdude"],
-    "test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev"],
+    "test": [*DEBIAN_PACKAGES, "gdb-avr", "libelf-dev", "libsimavr-dev", *native.browser_packages()],
 }
 NEXT = {
     "demo": "make demo",

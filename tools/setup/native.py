@@ -17,6 +17,19 @@ LIBRARIES = {"demo": ["tilenca_emulator", "tilenca_simulator"], "train": ["tilen
 REMEDY = "see above; where it is not the code's fault, remove build/release and run the same again"
 
 
+def browser_packages(os_release: Path = Path("/etc/os-release")) -> list[str]:
+    """The packages of a browser for the page's tests, with a font; none where apt has no such package.
+
+    Ubuntu has Chromium as a snap only. Where there is none, those tests are skipped and say so.
+    """
+    try:
+        told = os_release.read_text(encoding="utf-8")
+    except OSError:
+        return []
+    is_debian = re.search(r'^ID="?debian"?$', told, re.MULTILINE) is not None
+    return ["chromium", "fonts-dejavu-core"] if is_debian else []
+
+
 def install_system_packages(packages: Sequence[str]) -> None:
     """Installs those of the packages that are missing, by apt.
 

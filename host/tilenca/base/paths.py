@@ -27,6 +27,7 @@ DEFAULT_SHAPES = SHAPES / "digits.toml"
 DEFAULT_MODEL = MODELS / "digits"
 FIRMWARE = ROOT / "firmware"
 BUILD = ROOT / "build"
+PAGE = ROOT / "page"
 
 
 def built_elf(project: Path) -> Path:

@@ -1,12 +1,13 @@
 """The command line's grammar that all commands share: the parser, and the types of its values."""
 
 import argparse
+import stat
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
 from tilenca.base import paths
-from tilenca.base.errors import UsageError
+from tilenca.base.errors import UsageError, image_error
 from tilenca.base.shipped import model_folder, model_names, shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.fleet.tiles_file import DEFAULT
@@ -149,3 +150,19 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="F",
         help=f"each tile's board and place (default: {DEFAULT}, if there is one)",
     )
+
+
+def existing_image(image: Path, remedy: str) -> None:
+    """Checks that a firmware image is a file that can be read.
+
+    Raises:
+        BuildError, UsageError: it is not; see `image_error`.
+    """
+    try:
+        fact = None if stat.S_ISREG(image.stat().st_mode) else "not a file"
+        if fact is None:
+            image.open("rb").close()
+    except OSError as error:
+        fact = error.strerror
+    if fact is not None:
+        raise image_error(f"{image}: {fact}; {remedy}")

@@ -1,16 +1,23 @@
 """`tilenca emulate`: the firmware image on one emulated board per tile, wired as on the real board."""
 
 import argparse
-import stat
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
 from tilenca.base import paths
-from tilenca.base.errors import UsageError, image_error
+from tilenca.base.errors import UsageError
 from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
-from tilenca.commands.arguments import add_shapes_argument, count, number, seed, size, whole
+from tilenca.commands.arguments import (
+    add_shapes_argument,
+    count,
+    existing_image,
+    number,
+    seed,
+    size,
+    whole,
+)
 from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.faults import KINDS
@@ -142,7 +149,7 @@ def run(args: argparse.Namespace) -> int:
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     image = args.elf or firmware_image()
-    _check_readable(image, f"{build_remedy()}, or give --elf")
+    existing_image(image, f"{build_remedy()}, or give --elf")
     defaults = firmware_settings(image)
     settings = EmulationSettings(
         seconds=args.seconds,
@@ -202,17 +209,6 @@ def _check_combinations(args: argparse.Namespace) -> None:
         raise UsageError("--keep-running does nothing without --serve; add --serve DIR or leave it out")
 
 
-def _check_readable(image: Path, remedy: str) -> None:
-    try:
-        fact = None if stat.S_ISREG(image.stat().st_mode) else "not a file"
-        if fact is None:
-            image.open("rb").close()
-    except OSError as error:
-        fact = error.strerror
-    if fact is not None:
-        raise image_error(f"{image}: {fact}; {remedy}")
-
-
 def _bootloader(given: str | None) -> Path | None:
     if given is None:
         if not STOCK_BOOTLOADER.exists():
@@ -221,7 +217,7 @@ def _bootloader(given: str | None) -> Path | None:
         return STOCK_BOOTLOADER
     if given == NO_BOOTLOADER:
         return None
-    _check_readable(Path(given), f"give --bootloader an ELF or Intel HEX file, or {NO_BOOTLOADER}")
+    existing_image(Path(given), f"give --bootloader an ELF or Intel HEX file, or {NO_BOOTLOADER}")
     return Path(given)
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TextIO
 
 from tilenca.base.errors import UsageError
-from tilenca.base.sides import SIDES, SOUTH
+from tilenca.base.sides import SIDES
 from tilenca.base.stdio import warn
 from tilenca.emulator.experiment import Emulation
 from tilenca.emulator.gdb import WAIT_S, GdbPort
-from tilenca.emulator.probe import Waveforms, WireTap
+from tilenca.emulator.probe import Waveforms
+from tilenca.emulator.traffic import Traffic
 
 PIN = re.compile(r"([0-9]+):P?([A-HJ-L])([0-7])")
 TILE_AND_PORT = re.compile(r"([0-9]+)(?::([0-9]+))?")
@@ -60,25 +61,19 @@ class FrameLog:
     """Writes the traffic of each cable: a JSON object for every frame, in order of their ends."""
 
     def __init__(self, emulation: Emulation, file: TextIO) -> None:
-        """Watches all cables from now on; a side without USART is read at its cable's other end."""
+        """Watches all cables from now on."""
         self._file = file
-        self._taps: list[tuple[int, int, WireTap]] = []
-        for cable in emulation.cables:
-            for tile, side, other, other_side in (cable, (*cable[2:], *cable[:2])):
-                if side == SOUTH:
-                    tap = emulation.array[other].tap(other_side, receiving=True)
-                else:
-                    tap = emulation.array[tile].tap(side)
-                self._taps.append((tile, side, tap))
+        self._traffic = Traffic(emulation.array, emulation.cables)
 
     def collect(self) -> None:
         """Writes the frames that have ended since the last call."""
-        seen = []
-        for tile, side, tap in self._taps:
-            for frame in tap.read_frames():
-                seen.append((frame.time_s, tile + 1, SIDES[side], frame.data.hex()))
-        for time_s, tile, name, data in sorted(seen):
-            line = {"time": round(time_s, 6), "tile": tile, "side": name, "frame": data}
+        for frame in self._traffic.read():
+            line = {
+                "time": round(frame.time_s, 6),
+                "tile": frame.tile + 1,
+                "side": SIDES[frame.side],
+                "frame": frame.data.hex(),
+            }
             self._file.write(json.dumps(line) + "\n")
 
 

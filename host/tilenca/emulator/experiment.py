@@ -14,8 +14,8 @@ from tilenca.emulator.array import Array
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.faults import Faults, FaultSpec
 from tilenca.emulator.hardware import Hardware
+from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile
-from tilenca.emulator.types import port_name
 from tilenca.emulator.voice import Voice
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
@@ -125,9 +125,9 @@ class Emulation:
             elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads,
             hardware=hardware,
         )  # fmt: skip
-        self._faults = Faults(self.array, links, settings.seed)
+        self.faults = Faults(self.array, links, settings.seed)
         for spec in settings.faults:
-            self._faults.add(spec)
+            self.faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)
         self._voices = [Voice() for _ in range(count)]
         self.hello: HelloSentence | None = None  # the firmware's own greeting, the same from every tile
@@ -152,18 +152,18 @@ class Emulation:
         Raises:
             TilencaError: a tile stopped at a fault of its program.
         """
-        for tile in self._faults.run(seconds):
+        for tile in self.faults.run(seconds):
             self._voices[tile].restart()  # its sentences before the reset no longer count
-            self.switch_on_s[tile] = self._faults.restarted_s[tile]
+            self.switch_on_s[tile] = self.faults.restarted_s[tile]
 
     def listen(self) -> list[Heard]:
         """The tiles' sentences since the last call, in order of time; ports are called `tile-01`, ..."""
         heard = []
         for tile, voice in zip(self.array, self._voices, strict=True):
-            for time_s, value in tile.read_serial_timed():
-                for raw, sentence in voice.reader.feed(bytes([value])):
-                    heard.append(Heard(time_s, port_name(tile.index), raw, sentence))
-                    self._note(tile.index, heard[-1])
+            said = heard_from(tile, voice.reader)
+            for line in said:
+                self._note(tile.index, line)
+            heard += said
         return sorted(heard, key=lambda line: (line.time_s, line.port))
 
     def _note(self, tile: int, heard: Heard) -> None:

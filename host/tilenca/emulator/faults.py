@@ -109,12 +109,14 @@ class Faults:
 
     Attributes:
         restarted_s: the time of the last reset or switch-on of each tile that had one.
+        cut: the ends at which cables are cut now.
     """
 
     array: Array
     links: list[Link]
     seed: int
     restarted_s: dict[int, float] = field(default_factory=dict)
+    cut: set[End] = field(default_factory=set)
     _due: list[tuple[float, int, Callable[[], None]]] = field(default_factory=list)
     _spoilt: dict[End, dict[str, float]] = field(default_factory=dict)
 
@@ -126,11 +128,11 @@ class Faults:
         """
         if spec.kind in LINK_KINDS:
             ends = self._ends(spec)
-            self._plan(spec.from_s, lambda: self._spoil(ends, spec.kind, spec.value))
+            self._plan(spec.from_s, lambda: self.spoil(ends, spec.kind, spec.value))
             if spec.to_s is not None:
-                self._plan(spec.to_s, lambda: self._spoil(ends, spec.kind, 0.0))
+                self._plan(spec.to_s, lambda: self.spoil(ends, spec.kind, 0.0))
         elif spec.kind == "cut":
-            self._plan_switch(spec, [partial(self._connect, end) for end in self._ends(spec)])
+            self._plan_switch(spec, [partial(self.connect, end) for end in self._ends(spec)])
         elif spec.kind == "off":
             tiles = self._tiles(spec)
             self._plan_switch(spec, [partial(self._power, tile) for tile in tiles])
@@ -185,7 +187,8 @@ class Faults:
 
     # --- what they do ---
 
-    def _spoil(self, ends: list[End], kind: str, value: float) -> None:
+    def spoil(self, ends: list[End], kind: str, value: float) -> None:
+        """Sets one of LINK_KINDS in the directions that leave these ends."""
         for end in ends:
             spoilt = self._spoilt.setdefault(end, {})
             spoilt[kind] = value
@@ -195,9 +198,11 @@ class Faults:
             with suppress(UsageError):  # the cable has gone with its tile
                 self.array.set_fault(*end, fault, self.seed)
 
-    def _connect(self, end: End, on: bool) -> None:
+    def connect(self, end: End, on: bool) -> None:
+        """Cuts the cable at an end, or mends it."""
         with suppress(UsageError):  # the cable has gone with its tile
             (self.array.mend if on else self.array.cut)(*end)
+            (self.cut.discard if on else self.cut.add)(end)
 
     def _power(self, tile: int, on: bool) -> None:
         self.array[tile].powered = on

@@ -16,9 +16,7 @@ from tilenca.base.stdio import warn
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import parse_sentence
-
-# Every byte is a character of Latin-1 and back.
-ENCODING = "latin-1"
+from tilenca.protocol.stream import KINDS, RAW_ENCODING, StreamEvent, open_event, raw_event
 
 # No line is so long.
 LONGEST = 1 << 20
@@ -27,14 +25,11 @@ LONGEST = 1 << 20
 LAST_S = 253_402_300_799.0
 
 
-def as_record(event: Event) -> dict[str, object]:
+def as_record(event: Event) -> StreamEvent:
     """The event as one JSON object."""
-    about: dict[str, object] = {"time": round(event.time_s, 6), "port": event.port}
     if isinstance(event, Heard):
-        about["raw"] = event.raw.decode(ENCODING)
-    else:
-        about |= {"open": event.is_open, "reason": event.reason}
-    return about
+        return raw_event(event.time_s, event.port, event.raw)
+    return open_event(event.time_s, event.port, event.is_open, event.reason)
 
 
 def format_event(event: Event) -> str:
@@ -88,7 +83,9 @@ def _begins_well(path: Path) -> bool:
     with path.open("rb") as file:
         first = file.readline(LONGEST)
     try:
-        return not first or parse_event(first.decode("ascii")) is not None
+        if first:
+            parse_event(first.decode("ascii"))
+        return True
     except ValueError:
         return not first.endswith(b"\n") and first.startswith(b'{"time": ')  # cut off in its first line
 
@@ -100,8 +97,8 @@ def _ends_well(path: Path) -> bool:
         return file.read() in (b"", b"\n")
 
 
-def parse_event(line: str) -> Event:
-    """The event of a line.
+def parse_event(line: str) -> Event | None:
+    """The event of a line; None for one of the stream that is no telemetry, such as a tile's place.
 
     Raises:
         ValueError: it is none.
@@ -111,7 +108,7 @@ def parse_event(line: str) -> Event:
         case {"time": float() | int() as time_s} if not 0 <= time_s <= LAST_S:
             raise ValueError(f"{time_s} is no time in seconds since 1970")
         case {"time": float() | int() as time_s, "port": str(port), "raw": str(text)}:
-            raw = text.encode(ENCODING)
+            raw = text.encode(RAW_ENCODING)
             return Heard(float(time_s), port, raw, parse_sentence(raw))
         case {
             "time": float() | int() as time_s,
@@ -120,6 +117,9 @@ def parse_event(line: str) -> Event:
             "reason": str(reason),
         }:
             return PortNews(float(time_s), port, is_open, reason)
+        case {"time": float() | int()} if sum(kind in about for kind in KINDS) == 1:
+            if "raw" not in about and "open" not in about:
+                return None
     raise ValueError("neither a line nor news of a port")
 
 
@@ -194,4 +194,5 @@ def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
                 ) from error
             warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
             return
-        yield event
+        if event is not None:
+            yield event

@@ -1,0 +1,156 @@
+"""Emulated tiles in the places of a board, rearranged by hand while they run."""
+
+import random
+from collections.abc import Collection, Sequence
+from typing import TypeAlias
+
+from tilenca.base.errors import UsageError
+from tilenca.base.sides import EAST, OFFSETS, SIDES, SOUTH, opposite
+from tilenca.emulator.array import Link
+from tilenca.emulator.experiment import Emulation
+from tilenca.emulator.traffic import Traffic
+from tilenca.protocol.commands import set_command
+from tilenca.protocol.settings import settings_block
+
+# Row and column on the board; any whole numbers.
+Place: TypeAlias = tuple[int, int]
+# A tile stops at its number of updates: at once, where it has done more.
+STOPPED_UPDATES = 1
+FOR_EVER = 0
+
+
+class Arrangement:
+    """Which tile lies where, and what a hand may do about it.
+
+    A tile that is taken out keeps its number and lies in the box; the next one that is put in is the one of
+    the box with the lowest number, or a new one.
+
+    Attributes:
+        places: of the tiles on the board, by their index.
+        traffic: on the cables.
+    """
+
+    def __init__(self, emulation: Emulation, cells: Sequence[Place]) -> None:
+        """Takes over the tiles of a laid-out shape; `cells` are their places, in reading order."""
+        self._emulation, self._array = emulation, emulation.array
+        self.places: dict[int, Place] = dict(enumerate(cells))
+        self.traffic = Traffic(self._array, emulation.cables)
+        self._loss = 0.0
+
+    # --- questions ---
+
+    def tile_at(self, place: Place) -> int | None:
+        """The tile that lies there."""
+        return next((tile for tile, other in self.places.items() if other == place), None)
+
+    def cable(self, tile: int, side: int) -> Link:
+        """The cable at a side.
+
+        Raises:
+            UsageError: there is none.
+        """
+        for link in self._emulation.cables:
+            if (tile, side) in (link[:2], link[2:]):
+                return link
+        raise UsageError(f"tile {tile + 1} has no neighbour in the {SIDES[side]}")
+
+    # --- tiles ---
+
+    def put(self, place: Place) -> int:
+        """Plugs a tile in at a place, and switches it on; returns its index.
+
+        Raises:
+            UsageError: a tile lies there.
+        """
+        if self.tile_at(place) is not None:
+            raise UsageError("another tile lies there; choose an empty place")
+        in_box = [tile.index for tile in self._array if tile.index not in self.places]
+        tile = min(in_box) if in_box else self._new_tile()
+        if (period_ms := self._emulation.period_ms) is not None:
+            self._array[tile].write_eeprom(0, settings_block(tile + 1, period_ms, FOR_EVER))
+        self._array[tile].powered = True
+        self._plug_in(tile, place)
+        return tile
+
+    def pull(self, tile: int) -> None:
+        """Takes a tile away, with its cables."""
+        for link in [link for link in self._emulation.cables if tile in (link[0], link[2])]:
+            self._array.unlink(*link[:2])
+            self.traffic.forget(link)
+            self._emulation.cables.remove(link)
+            self._emulation.faults.cut -= {link[:2], link[2:]}
+        self._array[tile].powered = False
+        del self.places[tile]
+
+    def move(self, tile: int, place: Place) -> None:
+        """Takes a tile out and plugs it in elsewhere: it boots there.
+
+        Raises:
+            UsageError: another tile lies there.
+        """
+        if self.tile_at(place) not in (None, tile):
+            raise UsageError("another tile lies there; choose an empty place")
+        if self.places[tile] != place:
+            self.pull(tile)
+            self._array[tile].powered = True
+            self._plug_in(tile, place)
+
+    def arrange(self, cells: Collection[Place]) -> None:
+        """Makes another drawing: takes out what is too much, puts in what is missing; the rest runs on."""
+        for tile in [tile for tile, place in self.places.items() if place not in cells]:
+            self.pull(tile)
+        for place in sorted(set(cells) - set(self.places.values())):
+            self.put(place)
+
+    def freeze(self, tile: int, on: bool) -> None:
+        """Tells a tile over USB to update no more, or for ever; until then it does as before."""
+        self._array[tile].write_serial(set_command("updates", STOPPED_UPDATES if on else FOR_EVER))
+
+    # --- cables ---
+
+    @property
+    def cut(self) -> set[Link]:
+        """The cables that are cut now."""
+        cut = self._emulation.faults.cut
+        return {link for link in self._emulation.cables if link[:2] in cut or link[2:] in cut}
+
+    def connect(self, tile: int, side: int, whole: bool) -> None:
+        """Cuts or mends a cable.
+
+        Raises:
+            UsageError: there is none.
+        """
+        link = self.cable(tile, side)
+        self._emulation.faults.connect(link[:2], whole)
+        if whole:
+            self._emulation.faults.cut.discard(link[2:])  # a fault may have named its other end
+
+    def lose(self, share: float) -> None:
+        """From now on so many of the bytes on all cables are lost, 0..1."""
+        self._loss = share
+        for link in self._emulation.cables:
+            self._emulation.faults.spoil([link[:2], link[2:]], "loss", share)
+
+    # --- how ---
+
+    def _new_tile(self) -> int:
+        settings = self._emulation.settings
+        index = len(self._array)
+        ppm = random.Random(f"{settings.seed} tile {index}").uniform(-settings.ppm, settings.ppm)
+        self._array.add_tile(ppm)
+        return index
+
+    def _plug_in(self, tile: int, place: Place) -> None:
+        self.places[tile] = place
+        for side, (down, right) in enumerate(OFFSETS):
+            other = self.tile_at((place[0] + down, place[1] + right))
+            if other is None:
+                continue
+            link = (tile, side, other, opposite(side))
+            if side not in (EAST, SOUTH):
+                link = (*link[2:], *link[:2])
+            self._array.link(*link)
+            self._emulation.cables.append(link)
+            self.traffic.watch(link)
+            if self._loss:
+                self._emulation.faults.spoil([link[:2], link[2:]], "loss", self._loss)

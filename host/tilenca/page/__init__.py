@@ -1,0 +1,1 @@
+"""What does a browser see? The server of `tilenca page`: tile events out, commands in."""

@@ -1,0 +1,65 @@
+"""Events on their way to one client: the latest of each kind and tile, however slow the client is."""
+
+from collections.abc import Iterable
+
+from tilenca.protocol.stream import StreamEvent
+
+# Frames and refusals that wait; older ones give way.
+MOST_FRAMES = 256
+MOST_REFUSALS = 8
+# Batches that may be on their way, unseen.
+MOST_UNSEEN = 3
+
+
+class Outbox:
+    """Holds what the client has not got yet, and no more than one event for each thing that it can know."""
+
+    def __init__(self) -> None:
+        self._waiting: dict[tuple[object, ...], StreamEvent] = {}
+        self._counters: dict[str, int] = {"frame": 0, "refused": 0}
+        self._sent = self._seen = 0
+
+    def put(self, events: Iterable[StreamEvent]) -> None:
+        """Adds events, in their order; a newer one replaces the older one of the same thing."""
+        for event in events:
+            if "run" in event:  # all before it is void
+                kept = {key: old for key, old in self._waiting.items() if key[0] in ("stream", "refused")}
+                self._waiting = kept
+            key = self._key(event)
+            self._waiting.pop(key, None)
+            self._waiting[key] = event
+
+    def _key(self, event: StreamEvent) -> tuple[object, ...]:
+        port = event.get("port")
+        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS)):
+            if kind in event:
+                self._counters[kind] += 1
+                return kind, self._counters[kind] % most
+        if "raw" in event:  # the latest sentence of each name, of $LINK the latest of each side
+            fields = str(event["raw"]).split(",", 4)
+            return "raw", port, fields[0], fields[3] if fields[0] == "$LINK" and len(fields) > 3 else ""
+        for kind in ("stream", "run", "pace"):
+            if kind in event:
+                return (kind,)
+        return (
+            next(key for key in ("place", "cable", "open", "display") if key in event),
+            port,
+            event.get("side"),
+        )
+
+    @property
+    def may_send(self) -> bool:
+        """Whether something waits, and the client has seen most of what it got."""
+        return bool(self._waiting) and self._sent - self._seen < MOST_UNSEEN
+
+    def take(self) -> tuple[int, list[StreamEvent]]:
+        """The next batch: its number, counted from 1, and its events in order of time."""
+        self._sent += 1
+        events = list(self._waiting.values())
+        self._waiting = {}
+        return self._sent, events
+
+    def seen(self, batch: int) -> None:
+        """The client has shown a batch and all before it; a number that was not sent counts for nothing."""
+        if self._seen < batch <= self._sent:
+            self._seen = batch

@@ -1,0 +1,145 @@
+"""The web server of the page: the static bundle, and a WebSocket for each client with a run of its own."""
+
+import asyncio
+import json
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.routing import Mount, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from tilenca.page.guard import Guard, GuardedApp
+from tilenca.page.outbox import Outbox
+from tilenca.page.session import Session, Source
+from tilenca.protocol.stream import StreamEvent, refused_event
+from tilenca.protocol.stream_commands import MAX_TEXT, Seen, parse_command
+
+MOST_CLIENTS = 4
+# Bytes; a character takes at most four.
+MAX_MESSAGE = 4 * MAX_TEXT
+TRY_AGAIN_LATER = 1013
+GOODBYE_S = 1
+
+
+class Client:
+    """One WebSocket: commands in, batches of events out."""
+
+    def __init__(self, websocket: WebSocket, make_source: Callable[[], Source]) -> None:
+        self._websocket = websocket
+        self._outbox = Outbox()
+        self._news = asyncio.Event()
+        self._loop = asyncio.get_running_loop()
+        self._session = Session(make_source, self._deliver)
+
+    def _deliver(self, events: list[StreamEvent]) -> None:
+        """Takes events in the session's thread."""
+        with suppress(RuntimeError):  # the server has ended meanwhile
+            self._loop.call_soon_threadsafe(self._post, events)
+
+    def _post(self, events: list[StreamEvent]) -> None:
+        self._outbox.put(events)
+        self._news.set()
+
+    async def serve(self) -> None:
+        """Serves the client until it goes."""
+        sending = asyncio.create_task(self._send())
+        try:
+            while True:
+                self._take(await self._websocket.receive_text())
+        except (WebSocketDisconnect, KeyError):  # it has gone, or sends what is no text
+            pass
+        finally:
+            sending.cancel()
+            with suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
+                await sending
+            await asyncio.to_thread(self._session.close)
+
+    def _take(self, text: str) -> None:
+        try:
+            command = parse_command(text)
+        except ValueError as error:
+            self._post([refused_event(0.0, str(error))])
+            return
+        if isinstance(command, Seen):
+            self._outbox.seen(command.batch)
+            self._news.set()
+        elif not self._session.offer(command):
+            self._post([refused_event(0.0, "too many commands at once; wait a moment")])
+
+    async def _send(self) -> None:
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            while self._outbox.may_send:
+                batch, events = self._outbox.take()
+                message = json.dumps({"batch": batch, "events": events}, separators=(",", ":"))
+                await self._websocket.send_text(message)
+
+
+def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> ASGIApp:
+    """The application: the files of the bundle, and the stream.
+
+    Args:
+        bundle: folder of the static page.
+        make_source: called for each client, in a thread of its own.
+        guard: who may come.
+    """
+    clients = 0
+
+    async def stream(websocket: WebSocket) -> None:
+        nonlocal clients
+        if not guard.knows_token(websocket.query_params.get("token", "")):
+            await websocket.close(1008)
+            return
+        await websocket.accept()
+        if clients >= MOST_CLIENTS:
+            refusal = refused_event(0.0, f"{MOST_CLIENTS} pages are open already; close one of them")
+            await websocket.send_text(json.dumps({"batch": 0, "events": [refusal]}))
+            await websocket.close(TRY_AGAIN_LATER)
+            return
+        clients += 1
+        try:
+            await Client(websocket, make_source).serve()
+        finally:
+            clients -= 1
+            if websocket.client_state is WebSocketState.CONNECTED:
+                with suppress(RuntimeError):
+                    await websocket.close(1003)
+
+    routes = [WebSocketRoute("/stream", stream), Mount("/", StaticFiles(directory=bundle, html=True))]
+    return GuardedApp(Starlette(routes=routes), guard)
+
+
+def serve(app: ASGIApp, listener: socket.socket, on_start: Callable[[], None]) -> None:
+    """Serves on a listening socket until it is interrupted.
+
+    Args:
+        app: of `make_app`.
+        listener: bound and listening.
+        on_start: called as soon as clients can come.
+    """
+
+    class Server(uvicorn.Server):
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            await super().startup(sockets)
+            on_start()
+
+    config = uvicorn.Config(
+        app,
+        log_level="error",
+        access_log=False,
+        lifespan="off",
+        ws="wsproto",
+        ws_max_size=MAX_MESSAGE,
+        ws_per_message_deflate=False,
+        server_header=False,
+        timeout_graceful_shutdown=GOODBYE_S,
+        h11_max_incomplete_event_size=MAX_MESSAGE,
+    )
+    Server(config).run(sockets=[listener])

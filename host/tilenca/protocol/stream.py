@@ -1,0 +1,70 @@
+"""The stream of tile events (docs/PROTOCOL.md section 7): JSON objects, in recordings and on the page.
+
+Ports name tiles. Times are in seconds: since 1970 from real tiles, since the run began from emulated ones.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
+
+STREAM_VERSION = 1
+# Every byte is a character of Latin-1 and back.
+RAW_ENCODING = "latin-1"
+
+StreamEvent: TypeAlias = dict[str, Any]
+
+# What an event is about; each has exactly one of these keys.
+KINDS = ("stream", "run", "pace", "place", "cable", "raw", "open", "display", "frame", "refused")
+
+
+def _event(time_s: float, **about: object) -> StreamEvent:
+    return {"time": round(time_s, 6), **about}
+
+
+def stream_event(source: str, **about: object) -> StreamEvent:
+    """The first one: the version, what the tiles are (`emulated`), and what a page can do with them."""
+    return {"time": 0.0, "stream": STREAM_VERSION, "source": source, **about}
+
+
+def run_event(time_s: float, about: Mapping[str, object]) -> StreamEvent:
+    """A run begins: all that was known of tiles is void."""
+    return _event(time_s, run=dict(about))
+
+
+def pace_event(time_s: float, speed: float, paused: bool, share: float) -> StreamEvent:
+    """How time passes: `speed` times real time (0: as fast as it can), of which `share` (0..1) is reached."""
+    return _event(time_s, pace={"speed": speed, "paused": paused, "share": round(share, 3)})
+
+
+def place_event(time_s: float, port: str, place: tuple[int, int] | None) -> StreamEvent:
+    """A tile lies at (row, column) from now on; None: it was taken away."""
+    return _event(time_s, port=port, place=None if place is None else list(place))
+
+
+def cable_event(time_s: float, port: str, side: str, whole: bool) -> StreamEvent:
+    """The cable at a side is cut, or whole again; of the tile that is west or north of it."""
+    return _event(time_s, port=port, side=side, cable="whole" if whole else "cut")
+
+
+def raw_event(time_s: float, port: str, raw: bytes) -> StreamEvent:
+    """One line that a tile has said, without its end."""
+    return _event(time_s, port=port, raw=raw.decode(RAW_ENCODING))
+
+
+def open_event(time_s: float, port: str, is_open: bool, reason: str) -> StreamEvent:
+    """A port was opened or has closed; an emulated tile's closes while it has no power."""
+    return _event(time_s, port=port, open=is_open, reason=reason)
+
+
+def display_event(time_s: float, port: str, segments: int, rgb: Sequence[int], leds: str) -> StreamEvent:
+    """The levels of the display's pins: lit segments, duties 0..255, lamps that are lit (`NESW` or `-`)."""
+    return _event(time_s, port=port, display={"segments": segments, "rgb": list(rgb), "leds": leds})
+
+
+def frame_event(time_s: float, port: str, side: str, data: bytes) -> StreamEvent:
+    """A frame has left a tile on that side; its bytes as on the cable, without the delimiter."""
+    return _event(time_s, port=port, side=side, frame=data.hex())
+
+
+def refused_event(time_s: float, reason: str) -> StreamEvent:
+    """A command was not carried out."""
+    return _event(time_s, refused=reason)

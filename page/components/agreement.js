@@ -1,0 +1,153 @@
+// Agreement over time: what share of the tiles showed what, and a mark for every change of mind.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+import { cssColour } from "../stream/led.js";
+import { byId, setText } from "./dom.js";
+
+// What is in view, in seconds of the wall clock.
+const WINDOW_S = 24;
+const STEPS = [1, 2, 5];
+const MARKS = 13; // pixels for the marks below the bands
+const AXIS = 17;
+const DRAW_MS = 90;
+
+/** The distance of lines at a time axis: a round one. @param {number} span @param {number} most */
+export function roundStep(span, most) {
+  for (let power = -5; ; power++) {
+    for (const step of STEPS) {
+      const size = step * 10 ** power;
+      if (span / size <= most) return size;
+    }
+  }
+}
+
+/** @param {number} seconds @param {number} step */
+function timeText(seconds, step) {
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  return `${seconds.toFixed(digits)} s`;
+}
+
+/** @typedef {{text: string, line: string, band: string, font: string}} Ink */
+
+/** @param {Element} canvas @returns {Ink} */
+function inkOf(canvas) {
+  const style = getComputedStyle(canvas);
+  /** @param {string} name */
+  const value = (name) => style.getPropertyValue(name);
+  return { text: value("--ink-soft"), line: value("--line"), band: value("--dark-band"), font: style.font };
+}
+
+export class Agreement {
+  /** @param {Tiles} tiles */
+  constructor(tiles) {
+    this.tiles = tiles;
+    this.canvas = /** @type {HTMLCanvasElement} */ (byId("agreement"));
+    this.pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    this.text = byId("agreement-text");
+    this.drawn = 0;
+    this.spanS = 0;
+    this.lastRate = 1;
+    /** Colours and font of the style sheet, until they may have changed. @type {Ink | null} */
+    this.ink = null;
+    const forget = () => {
+      this.ink = null;
+      this.drawn = 0;
+    };
+    new ResizeObserver(forget).observe(this.canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forget);
+  }
+
+  /** @param {number} now */
+  update(now) {
+    if (now - this.drawn < DRAW_MS) return;
+    this.drawn = now;
+    const { tiles } = this;
+    const { counts, total } = tiles.count();
+    const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
+    const share = total ? Math.round((100 * most) / total) : 0;
+    const changes = tiles.changeCount;
+    setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind`);
+    this.draw();
+  }
+
+  draw() {
+    const { canvas, pen, tiles } = this;
+    const ratio = Math.min(devicePixelRatio || 1, 2);
+    const width = canvas.clientWidth;
+    const height = canvas.clientHeight;
+    if (!width || !height) return;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    const ink = (this.ink ??= inkOf(canvas));
+    const rate = tiles.pace.speed || Math.max(1, tiles.pace.share);
+    if (!tiles.pace.paused) this.lastRate = rate;
+    this.spanS = WINDOW_S * this.lastRate;
+    const end = Math.max(tiles.time, this.spanS * 0.25);
+    const begin = Math.max(0, end - this.spanS);
+    const span = Math.max(end - begin, this.spanS * 0.25);
+    /** @param {number} time */
+    const x = (time) => ((time - begin) / span) * width;
+    const top = height - MARKS - AXIS;
+    this.drawBands(x, top, begin, ink.band);
+    this.drawMarks(x, top, begin);
+    pen.fillStyle = ink.text;
+    pen.strokeStyle = ink.line;
+    pen.lineWidth = 1;
+    pen.font = ink.font;
+    pen.textBaseline = "bottom";
+    const step = roundStep(span, Math.max(2, width / 110));
+    for (let time = Math.ceil(begin / step) * step; x(time) < width - 8; time += step) {
+      pen.beginPath();
+      pen.moveTo(Math.round(x(time)) + 0.5, top);
+      pen.lineTo(Math.round(x(time)) + 0.5, height - AXIS + 2);
+      pen.stroke();
+      const text = timeText(time, step);
+      const at = Math.max(0, x(time) - pen.measureText(text).width / 2);
+      if (at + pen.measureText(text).width < width) pen.fillText(text, at, height);
+    }
+  }
+
+  /** @param {(time: number) => number} x @param {number} height @param {number} begin @param {string} dark */
+  drawBands(x, height, begin, dark) {
+    const { pen, tiles } = this;
+    const { samples } = tiles;
+    let first = samples.length - 1;
+    while (first > 0 && samples[first].time > begin) first--;
+    const labels = tiles.looks.map((look) => look.label);
+    for (let i = Math.max(first, 0); i < samples.length; i++) {
+      const { counts, total, time } = samples[i];
+      const from = Math.max(0, Math.round(x(time)));
+      const to = Math.round(x(i + 1 < samples.length ? samples[i + 1].time : tiles.time));
+      if (!total || to <= from) continue;
+      let y = height;
+      for (const label of labels) {
+        const tall = ((counts.get(label) ?? 0) / total) * height;
+        if (!tall) continue;
+        pen.fillStyle = cssColour(tiles.look(label).rgb);
+        pen.fillRect(from, y - tall, to - from, tall);
+        y -= tall;
+      }
+      if (y > 0.5) {
+        pen.fillStyle = dark;
+        pen.fillRect(from, 0, to - from, y);
+      }
+    }
+  }
+
+  /** @param {(time: number) => number} x @param {number} top @param {number} begin */
+  drawMarks(x, top, begin) {
+    const { pen, tiles } = this;
+    for (let i = tiles.changes.length - 1; i >= 0 && tiles.changes[i].time >= begin; i--) {
+      const { time, from, to } = tiles.changes[i];
+      if (from === "" || to === "") continue;
+      pen.fillStyle = cssColour(tiles.look(to).rgb);
+      pen.beginPath();
+      pen.arc(x(time), top + MARKS / 2 + 1, 2.6, 0, 7);
+      pen.fill();
+    }
+  }
+}

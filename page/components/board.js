@@ -1,0 +1,220 @@
+// The board: tiles and empty places as buttons, with the cables over them; by pointer and by keyboard.
+
+/** @import { Place } from "../stream/source.js" */
+/** @import { Tiles } from "../stream/tiles.js" */
+/** @import { Deeds } from "./hands.js" */
+import { OFFSETS, SIDES } from "../stream/source.js";
+import { Cables } from "./cables.js";
+import { byId, element, setText } from "./dom.js";
+import { Hands } from "./hands.js";
+import { TileView } from "./tile.js";
+import { View } from "./view.js";
+
+/** @type {Record<string, number>} */
+const ARROWS = { ArrowUp: 0, ArrowRight: 1, ArrowDown: 2, ArrowLeft: 3 };
+
+/** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "cut">} BoardDeeds */
+
+export class Board {
+  /** @param {HTMLElement} root @param {Tiles} tiles @param {BoardDeeds} deeds */
+  constructor(root, tiles, deeds) {
+    this.root = root;
+    this.tiles = tiles;
+    this.deeds = deeds;
+    this.view = new View();
+    this.cables = new Cables();
+    /** @type {Map<string, TileView>} */
+    this.views = new Map();
+    /** Empty places, "row,col". @type {Map<string, HTMLButtonElement>} */
+    this.spots = new Map();
+    /** @type {string | null} */
+    this.selected = null;
+    /** The place that Tab leads to. @type {Place} */
+    this.at = [0, 0];
+    /** @type {string | null} */
+    this.lifted = null;
+    this.hands = new Hands(root, tiles, this.view, {
+      ...deeds,
+      lift: (port, dx, dy, place) => this.lift(port, dx, dy, place),
+      drop: () => this.drop(),
+      stroke: (points) => {
+        this.cables.stroke = points;
+        this.cables.isStale = true;
+      },
+    });
+    root.append(...this.cables.canvases);
+    root.addEventListener("keydown", (event) => this.key(event));
+    root.addEventListener("click", (event) => this.click(event));
+    root.addEventListener("focusin", (event) => this.focused(event));
+    new ResizeObserver(() => this.arrange()).observe(root);
+  }
+
+  /** Shows what is new; once for every frame. @param {number} now */
+  update(now) {
+    if (this.tiles.isMoved && !this.hands.grip?.moved) {
+      this.tiles.isMoved = false;
+      this.arrange();
+    }
+    for (const port of this.tiles.dirty) {
+      const tile = this.tiles.byPort.get(port);
+      if (tile) this.views.get(port)?.update(tile, port === this.selected);
+    }
+    this.tiles.dirty.clear();
+    this.cables.launch(this.tiles.pulses, this.tiles, this.view, now);
+    this.tiles.pulses = [];
+    this.cables.draw(this.tiles, this.view, now);
+  }
+
+  /** @param {string | null} port */
+  select(port) {
+    for (const one of [this.selected, port]) if (one) this.tiles.dirty.add(one);
+    this.selected = port;
+  }
+
+  /** Puts everything in its place. */
+  arrange() {
+    const hadFocus = this.root.contains(document.activeElement);
+    const { clientWidth: width, clientHeight: height } = this.root;
+    const laid = this.tiles.laid();
+    this.view.fit(laid.map((tile) => tile.place), width, height);
+    this.root.style.setProperty("--size", `${this.view.size}px`);
+    this.root.classList.toggle("small", this.view.size < 62);
+    this.cables.resize(width, height);
+    const gone = new Set(this.views.keys());
+    for (const tile of laid) {
+        gone.delete(tile.port);
+      let view = this.views.get(tile.port);
+      if (!view) {
+        view = new TileView(tile);
+        this.views.set(tile.port, view);
+        this.root.append(view.button);
+      }
+      move(view.button, this.view.corner(...tile.place));
+      view.update(tile, tile.port === this.selected);
+    }
+    for (const port of gone) {
+      this.views.get(port)?.button.remove();
+      this.views.delete(port);
+    }
+    this.arrangeSpots();
+    this.rove(this.at, hadFocus && !this.root.contains(document.activeElement));
+  }
+
+  arrangeSpots() {
+    const gone = new Set(this.spots.keys());
+    for (const place of this.view.places()) {
+      const key = place.join();
+      if (this.tiles.at(...place)) continue;
+      gone.delete(key);
+      let spot = this.spots.get(key);
+      if (!spot) {
+        spot = element("button", {
+          type: "button", class: "spot", tabindex: -1, "data-place": key,
+          "aria-label": `Empty place, row ${place[0] + 1}, column ${place[1] + 1}: put a tile`,
+        });
+        this.spots.set(key, spot);
+        this.root.prepend(spot);
+      }
+      move(spot, this.view.corner(...place));
+    }
+    for (const key of gone) {
+      this.spots.get(key)?.remove();
+      this.spots.delete(key);
+    }
+  }
+
+  // --- by pointer ---
+
+  /** A click that no pointer made: Enter, Space, or a screen reader. @param {MouseEvent} event */
+  click(event) {
+    if (event.detail !== 0) return;
+    const target = /** @type {HTMLElement} */ (event.target).closest("button");
+    const { port, place } = target?.dataset ?? {};
+    if (port) this.deeds.select(port);
+    else if (place) this.deeds.put(placeOf(place));
+  }
+
+  /** @param {string} port @param {number} dx @param {number} dy @param {Place | null} place */
+  lift(port, dx, dy, place) {
+    if (!this.lifted) this.cables.flights = [];
+    this.lifted = this.cables.lifted = port;
+    this.cables.isStale = true;
+    const button = this.views.get(port)?.button;
+    button?.classList.add("lifted");
+    button?.style.setProperty("translate", `${dx}px ${dy}px`);
+    byId("box").hidden = false;
+    byId("box").classList.toggle("over", place === null);
+    setText(byId("box"), place ? "Drag it off the board to take it out" : "Let go to take it out");
+    for (const [key, spot] of this.spots) spot.classList.toggle("aim", key === place?.join());
+  }
+
+  drop() {
+    if (!this.lifted) return;
+    const button = this.views.get(this.lifted)?.button;
+    button?.classList.remove("lifted");
+    button?.style.removeProperty("translate");
+    this.lifted = this.cables.lifted = null;
+    this.cables.isStale = true;
+    byId("box").hidden = true;
+    for (const spot of this.spots.values()) spot.classList.remove("aim");
+  }
+
+  // --- by keyboard ---
+
+  /** @param {KeyboardEvent} event */
+  key(event) {
+    const side = ARROWS[event.key];
+    const tile = this.tiles.at(...this.at);
+    if (side !== undefined && event.shiftKey) {
+      if (tile && this.tiles.neighbour(tile, side)) {
+        this.deeds.cut(tile.port, SIDES[side], !this.tiles.isCut(tile, side));
+      }
+    } else if (side !== undefined) {
+      this.rove([this.at[0] + OFFSETS[side][0], this.at[1] + OFFSETS[side][1]], true);
+    } else if ((event.key === "Delete" || event.key === "Backspace") && tile) {
+      this.deeds.pull(tile.port);
+    } else if (event.key === "Escape" && this.selected) {
+      this.deeds.select(null);
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  /** @param {FocusEvent} event */
+  focused(event) {
+    const { port, place } = /** @type {HTMLElement} */ (event.target).dataset;
+    if (port) this.at = this.tiles.byPort.get(port)?.place ?? this.at;
+    else if (place) this.at = placeOf(place);
+    this.rove(this.at);
+  }
+
+  /** The button at a place. @param {Place} place */
+  buttonAt(place) {
+    const tile = this.tiles.at(...place);
+    return tile ? this.views.get(tile.port)?.button : this.spots.get(place.join());
+  }
+
+  /** Makes Tab lead to a place, or to the nearest one in view. @param {Place} place @param {boolean} [focus] */
+  rove(place, focus = false) {
+    const { view } = this;
+    const row = Math.max(view.top - 1, Math.min(view.top + view.rows, place[0]));
+    const col = Math.max(view.left - 1, Math.min(view.left + view.cols, place[1]));
+    for (const button of this.root.querySelectorAll("button[tabindex='0']")) button.setAttribute("tabindex", "-1");
+    this.at = [row, col];
+    const button = this.buttonAt(this.at);
+    button?.setAttribute("tabindex", "0");
+    if (focus) button?.focus({ preventScroll: true });
+  }
+}
+
+/** @param {string} text "row,col" @returns {Place} */
+function placeOf(text) {
+  const [row, col] = text.split(",").map(Number);
+  return [row, col];
+}
+
+/** @param {HTMLElement} one @param {[number, number]} to */
+function move(one, [x, y]) {
+  one.style.transform = `translate(${x}px, ${y}px)`;
+}

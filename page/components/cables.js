@@ -1,0 +1,147 @@
+// The cables between the tiles, and in slow motion what runs along them. Drawn on one canvas over the board.
+
+/** @import { Pulse, Tiles } from "../stream/tiles.js" */
+/** @import { View } from "./view.js" */
+import { OFFSETS } from "../stream/source.js";
+import { cssColour } from "../stream/led.js";
+import { calm, element } from "./dom.js";
+
+const BITS = 10; // of a byte on the cable
+const COLUMN_BAUD = 38400;
+const ROW_BAUD = 125000;
+const SHORTEST_MS = 140;
+const MOST = 240;
+// From the middle of a tile to its edge, and to where a pulse begins, in tiles.
+const EDGE = 0.43;
+const START = 0.34;
+
+/** @typedef {{x: number, y: number, dx: number, dy: number, from: number, ms: number, colour: string}} Flight */
+
+export class Cables {
+  constructor() {
+    // What lies still is drawn seldom, what flies with every frame.
+    this.canvases = ["cables", "cables flying"].map((name) => element("canvas", { class: name, "aria-hidden": "true" }));
+    const [still, air] = this.canvases.map((canvas) => canvas.getContext("2d"));
+    this.still = /** @type {CanvasRenderingContext2D} */ (still);
+    this.air = /** @type {CanvasRenderingContext2D} */ (air);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (this.isStale = true));
+    /** @type {Flight[]} */
+    this.flights = [];
+    this.isStale = true;
+    this.wasFlying = false;
+    /** A tile in the hand, whose cables hang loose. @type {string | null} */
+    this.lifted = null;
+    /** The stroke of the knife, in pixels. @type {[number, number][]} */
+    this.stroke = [];
+  }
+
+  /** @param {number} width @param {number} height */
+  resize(width, height) {
+    const ratio = Math.min(devicePixelRatio || 1, 2);
+    for (const pen of [this.still, this.air]) {
+      pen.canvas.width = Math.round(width * ratio);
+      pen.canvas.height = Math.round(height * ratio);
+      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    }
+    this.isStale = true;
+  }
+
+  /** Lets frames fly. @param {Pulse[]} pulses @param {Tiles} tiles @param {View} view @param {number} now */
+  launch(pulses, tiles, view, now) {
+    if (calm.matches || tiles.pace.speed === 0) return;
+    for (const pulse of pulses) {
+      const tile = tiles.byPort.get(pulse.from);
+      if (!tile?.place || this.lifted || this.flights.length >= MOST || tiles.isCut(tile, pulse.side)) continue;
+      const [x, y] = view.middle(...tile.place);
+      const [down, right] = OFFSETS[pulse.side];
+      const baud = down ? COLUMN_BAUD : ROW_BAUD;
+      const ms = Math.max(SHORTEST_MS, (1000 * pulse.bytes * BITS) / baud / tiles.pace.speed);
+      this.flights.push({ x, y, dx: right, dy: down, from: now, ms, colour: cssColour(tile.rgb) });
+    }
+  }
+
+  /** @param {Tiles} tiles @param {View} view @param {number} now */
+  draw(tiles, view, now) {
+    this.flights = this.flights.filter((flight) => now - flight.from < flight.ms);
+    if (this.isStale) {
+      this.still.clearRect(0, 0, this.still.canvas.width, this.still.canvas.height);
+      this.drawCables(tiles, view);
+    }
+    const isFlying = this.flights.length > 0 || this.stroke.length > 1;
+    if (isFlying || this.wasFlying || this.isStale) this.drawFlights(view, now);
+    this.wasFlying = isFlying;
+    this.isStale = false;
+  }
+
+  /** @param {View} view @param {number} now */
+  drawFlights(view, now) {
+    const pen = this.air;
+    pen.clearRect(0, 0, pen.canvas.width, pen.canvas.height);
+    const length = view.size * (1 - 2 * START);
+    for (const { x, y, dx, dy, from, ms, colour } of this.flights) {
+      const way = view.size * START + (length * (now - from)) / ms;
+      pen.fillStyle = colour;
+      pen.globalAlpha = 0.95;
+      pen.beginPath();
+      // To the right of its way, so that both directions are seen.
+      const aside = view.size * 0.055;
+      pen.arc(x + dx * way - dy * aside, y + dy * way + dx * aside, Math.max(1.6, view.size * 0.028), 0, 7);
+      pen.fill();
+    }
+    pen.globalAlpha = 1;
+    this.drawStroke();
+  }
+
+  /** @param {Tiles} tiles @param {View} view */
+  drawCables(tiles, view) {
+    const pen = this.still;
+    const style = getComputedStyle(pen.canvas);
+    const gap = view.size * (0.5 - EDGE);
+    const width = view.size * 0.2;
+    for (const tile of tiles.laid()) {
+      for (const side of [1, 2]) {
+        const other = tiles.neighbour(tile, side);
+        if (!other || this.lifted === tile.port || this.lifted === other.port) continue;
+        const [x, y] = view.middle(...tile.place);
+        const [down, right] = OFFSETS[side];
+        pen.save();
+        pen.translate(x + (right * view.size) / 2, y + (down * view.size) / 2);
+        if (down) pen.rotate(Math.PI / 2);
+        const isCut = tiles.isCut(tile, side);
+        pen.strokeStyle = style.getPropertyValue(isCut ? "--cut" : "--cable");
+        pen.lineWidth = Math.max(1, view.size * 0.022);
+        for (const offset of [-1, 0, 1]) {
+          const at = (offset * width) / 3;
+          pen.beginPath();
+          pen.moveTo(-gap, at);
+          pen.lineTo(isCut ? -gap * 0.45 : gap, at);
+          if (isCut) {
+            pen.moveTo(gap * 0.45, at);
+            pen.lineTo(gap, at);
+          }
+          pen.stroke();
+        }
+        if (isCut) {
+          pen.lineWidth = Math.max(2, view.size * 0.03);
+          pen.lineCap = "round";
+          pen.beginPath();
+          pen.moveTo(-gap * 0.5, width * 0.75);
+          pen.lineTo(gap * 0.5, -width * 0.75);
+          pen.stroke();
+        }
+        pen.restore();
+      }
+    }
+  }
+
+  drawStroke() {
+    if (this.stroke.length < 2) return;
+    const pen = this.air;
+    pen.strokeStyle = getComputedStyle(pen.canvas).getPropertyValue("--cut");
+    pen.lineWidth = 2;
+    pen.lineCap = pen.lineJoin = "round";
+    pen.beginPath();
+    this.stroke.forEach(([x, y], index) => (index ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+    pen.stroke();
+  }
+}

@@ -1,0 +1,64 @@
+// The drawings to choose from; one slides under the running tiles.
+
+/** @import { Drawing } from "../stream/source.js" */
+import { cellsOf } from "../stream/address.js";
+import { cssColour } from "../stream/led.js";
+import { element, svg } from "./dom.js";
+
+/** @param {Drawing} drawing @param {string} colour */
+function thumbnail(drawing, colour) {
+  const cols = drawing.rows[0].length;
+  const rows = drawing.rows.length;
+  const side = Math.max(cols, rows, 5);
+  const cells = cellsOf(drawing.rows).map(([row, col]) => svg("rect", {
+    x: col + (side - cols) / 2 + 0.06, y: row + (side - rows) / 2 + 0.06, width: 0.88, height: 0.88, rx: 0.18,
+  }));
+  const picture = svg("svg", { viewBox: `0 0 ${side} ${side}`, "aria-hidden": "true" }, ...cells);
+  /** @type {SVGElement} */ (picture).style.setProperty("--led", colour);
+  return picture;
+}
+
+export class Drawings {
+  /** @param {HTMLElement} root @param {(drawing: Drawing) => void} choose */
+  constructor(root, choose) {
+    this.root = root;
+    this.choose = choose;
+    /** @type {Map<string, HTMLButtonElement>} */
+    this.buttons = new Map();
+  }
+
+  /** @param {Drawing[]} drawings @param {(label: string) => number[]} colour duty of a label's class */
+  fill(drawings, colour) {
+    this.buttons.clear();
+    const heading = element("h2", { id: "drawings-title" }, "Drawings");
+    const help = element("p", { class: "summary" }, "Choose one: it slides under the running tiles.");
+    /** @type {Map<string, Drawing[]>} */
+    const files = new Map();
+    for (const one of drawings) {
+      const file = one.name.split("/")[0];
+      files.set(file, [...(files.get(file) ?? []), one]);
+    }
+    const parts = [...files].map(([file, members]) => {
+      const list = element("div", { class: "gallery", role: "group", "aria-label": file });
+      for (const one of members) {
+        const button = element("button", {
+          type: "button", "aria-pressed": "false", "aria-label": `${one.label}, ${one.name}`, title: one.name,
+          onclick: () => this.choose(one),
+        });
+        button.append(thumbnail(one, cssColour(colour(one.label))));
+        this.buttons.set(one.name, button);
+        list.append(button);
+      }
+      return element("div", { class: "file" }, element("h3", {}, file.replaceAll("-", " ")), list);
+    });
+    this.root.replaceChildren(heading, help, ...parts);
+  }
+
+  /** @param {string} name of the drawing that lies on the board; "" for none of them */
+  mark(name) {
+    for (const [one, button] of this.buttons) {
+      const pressed = String(one === name);
+      if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
+    }
+  }
+}

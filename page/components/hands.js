@@ -1,0 +1,181 @@
+// What a pointer does on the board: pick up a tile, draw, cut. Knows places, and no elements of tiles.
+
+/** @import { Place } from "../stream/source.js" */
+/** @import { Tile, Tiles } from "../stream/tiles.js" */
+/** @import { View } from "./view.js" */
+import { OFFSETS, SIDES } from "../stream/source.js";
+
+/** @typedef {"hand" | "pencil" | "knife"} Tool */
+
+// A pointer that moved less has clicked.
+const CLICK_PX = 6;
+
+/** Whether two stretches cross. @param {number[]} a @param {number[]} b @param {number[]} c @param {number[]} d */
+function cross(a, b, c, d) {
+  /** @param {number[]} p @param {number[]} q @param {number[]} r */
+  const turn = (p, q, r) => Math.sign((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
+  return turn(a, b, c) !== turn(a, b, d) && turn(c, d, a) !== turn(c, d, b);
+}
+
+/**
+ * The cables that a stroke crosses: each with its tile in the north or west, and that tile's side.
+ * @param {[number, number]} from @param {[number, number]} to @param {Tiles} tiles @param {View} view
+ * @returns {[Tile, number][]}
+ */
+export function cablesCrossed(from, to, tiles, view) {
+  /** @type {[Tile, number][]} */
+  const found = [];
+  for (const tile of tiles.laid()) {
+    const middle = view.middle(...tile.place);
+    for (const side of [1, 2]) {
+      const other = tiles.neighbour(tile, side);
+      if (other?.place && cross(from, to, middle, view.middle(...other.place))) found.push([tile, side]);
+    }
+  }
+  return found;
+}
+
+/**
+ * The cable nearest to a point, if it is near: for a click of the knife.
+ * @param {[number, number]} at @param {Tiles} tiles @param {View} view
+ * @returns {[Tile, number] | null}
+ */
+function cableNear(at, tiles, view) {
+  for (const tile of tiles.laid()) {
+    const [x, y] = view.middle(...tile.place);
+    for (const side of [1, 2]) {
+      const [down, right] = OFFSETS[side];
+      const far = Math.hypot(at[0] - x - (right * view.size) / 2, at[1] - y - (down * view.size) / 2);
+      if (tiles.neighbour(tile, side) && far < view.size * 0.25) return [tile, side];
+    }
+  }
+  return null;
+}
+
+/**
+ * @typedef {{
+ *   select: (port: string | null) => void,
+ *   put: (place: Place) => void,
+ *   pull: (port: string) => void,
+ *   move: (port: string, place: Place) => void,
+ *   cut: (port: string, side: string, on: boolean) => void,
+ *   lift: (port: string, dx: number, dy: number, place: Place | null) => void,
+ *   drop: () => void,
+ *   stroke: (points: [number, number][]) => void,
+ * }} Deeds
+ */
+
+export class Hands {
+  /** @param {HTMLElement} board @param {Tiles} tiles @param {View} view @param {Deeds} deeds */
+  constructor(board, tiles, view, deeds) {
+    this.board = board;
+    this.tiles = tiles;
+    this.view = view;
+    this.deeds = deeds;
+    /** @type {Tool} */
+    this.tool = "hand";
+    /** @type {{id: number, start: [number, number], last: [number, number], tile: Tile | undefined,
+     *   moved: boolean, puts: boolean, drawn: Set<string>, points: [number, number][]} | null} */
+    this.grip = null;
+    board.addEventListener("pointerdown", (event) => this.down(event));
+    board.addEventListener("pointermove", (event) => this.moved(event));
+    board.addEventListener("pointerup", (event) => this.up(event));
+    board.addEventListener("pointercancel", () => this.letGo());
+  }
+
+  /** @param {PointerEvent} event @returns {[number, number]} */
+  point(event) {
+    const box = this.board.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  /** @param {PointerEvent} event */
+  down(event) {
+    if (event.button !== 0 || this.grip) return;
+    const at = this.point(event);
+    const place = this.view.placeAt(...at);
+    const tile = this.tiles.at(...place);
+    this.grip = { id: event.pointerId, start: at, last: at, tile, moved: false, puts: !tile, drawn: new Set(), points: [at] };
+    this.board.setPointerCapture(event.pointerId);
+    if (this.tool === "pencil") this.draw(place);
+  }
+
+  /** @param {PointerEvent} event */
+  moved(event) {
+    const { grip } = this;
+    if (!grip || event.pointerId !== grip.id) return;
+    const at = this.point(event);
+    if (Math.hypot(at[0] - grip.start[0], at[1] - grip.start[1]) > CLICK_PX) grip.moved = true;
+    if (this.tool === "pencil") {
+      for (const place of this.placesBetween(grip.last, at)) this.draw(place);
+    } else if (this.tool === "knife" && grip.moved) {
+      for (const [tile, side] of cablesCrossed(grip.last, at, this.tiles, this.view)) {
+        if (!this.tiles.isCut(tile, side)) this.deeds.cut(tile.port, SIDES[side], true);
+      }
+      grip.points.push(at);
+      this.deeds.stroke(grip.points.slice(-40));
+    } else if (this.tool === "hand" && grip.tile && grip.moved) {
+      const place = this.isInside(at) ? this.view.placeAt(...at) : null;
+      this.deeds.lift(grip.tile.port, at[0] - grip.start[0], at[1] - grip.start[1], place);
+    }
+    grip.last = at;
+  }
+
+  /** @param {PointerEvent} event */
+  up(event) {
+    const { grip } = this;
+    if (!grip || event.pointerId !== grip.id) return;
+    const at = this.point(event);
+    if (this.tool === "hand") {
+      const place = this.view.placeAt(...at);
+      if (!grip.moved) {
+        if (grip.tile) this.deeds.select(grip.tile.port);
+        else this.deeds.put(place);
+      } else if (grip.tile) {
+        if (!this.isInside(at)) this.deeds.pull(grip.tile.port);
+        else if (!this.tiles.at(...place)) this.deeds.move(grip.tile.port, place);
+      }
+    } else if (this.tool === "knife" && !grip.moved) {
+      const near = cableNear(at, this.tiles, this.view);
+      if (near) this.deeds.cut(near[0].port, SIDES[near[1]], !this.tiles.isCut(...near));
+    }
+    this.letGo();
+  }
+
+  letGo() {
+    this.grip = null;
+    this.deeds.stroke([]);
+    this.deeds.drop();
+  }
+
+  /** Whether a point is where tiles may lie. @param {[number, number]} at */
+  isInside(at) {
+    const place = this.view.placeAt(...at);
+    return at[0] >= 0 && at[1] >= 0 && at[0] < this.board.clientWidth && at[1] < this.board.clientHeight &&
+      this.view.places().some(([row, col]) => row === place[0] && col === place[1]);
+  }
+
+  /** @param {Place} place */
+  draw(place) {
+    const { grip } = this;
+    if (!grip || grip.drawn.has(place.join())) return;
+    grip.drawn.add(place.join());
+    const tile = this.tiles.at(...place);
+    if (grip.puts && !tile && this.isInside(this.view.middle(...place))) this.deeds.put(place);
+    else if (!grip.puts && tile) this.deeds.pull(tile.port);
+  }
+
+  /** The places on the way: a quick pointer jumps. @param {[number, number]} from @param {[number, number]} to */
+  placesBetween(from, to) {
+    const steps = Math.max(1, Math.ceil(Math.hypot(to[0] - from[0], to[1] - from[1]) / (this.view.size / 3)));
+    /** @type {Place[]} */
+    const places = [];
+    for (let step = 1; step <= steps; step++) {
+      const share = step / steps;
+      const place = this.view.placeAt(from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share);
+      const last = places.at(-1);
+      if (!last || last[0] !== place[0] || last[1] !== place[1]) places.push(place);
+    }
+    return places;
+  }
+}

@@ -1,0 +1,177 @@
+// What is in one tile: its guess and how sure it is, its channels, its links, its counters.
+
+/** @import { Tile, Tiles } from "../stream/tiles.js" */
+import { MESSAGE_OFFSET } from "../stream/sentences.js";
+import { SIDES } from "../stream/source.js";
+import { cssColour } from "../stream/led.js";
+import { element, setText } from "./dom.js";
+
+const FULL = 127; // the largest message
+const SIDE_NAMES = ["North", "East", "South", "West"];
+
+/**
+ * @typedef {{
+ *   select: (port: string | null) => void,
+ *   pull: (port: string) => void,
+ *   power: (port: string, on: boolean) => void,
+ *   freeze: (port: string, on: boolean) => void,
+ *   reset: (port: string) => void,
+ *   cut: (port: string, side: string, on: boolean) => void,
+ * }} InspectorDeeds
+ */
+
+/** A number of a state as a bar from the middle. */
+class Meter {
+  /** @param {string} name @param {string} [colour] */
+  constructor(name, colour) {
+    this.fill = element("span", { class: "fill" });
+    if (colour) this.fill.style.setProperty("--led", colour);
+    this.value = element("span", { class: "value" });
+    this.row = element("li", {}, element("span", { class: "name" }, name), element("span", { class: "meter" }, this.fill), this.value);
+  }
+
+  /** @param {number | undefined} value of -127..127 */
+  show(value) {
+    const share = (value ?? 0) / FULL;
+    this.fill.style.transform = `scaleX(${share.toFixed(3)})`;
+    setText(this.value, value === undefined ? "" : String(value));
+  }
+}
+
+export class Inspector {
+  /** @param {HTMLElement} root @param {Tiles} tiles @param {InspectorDeeds} deeds */
+  constructor(root, tiles, deeds) {
+    this.root = root;
+    this.tiles = tiles;
+    this.deeds = deeds;
+    this.port = "";
+    this.shape = "";
+    /** @type {Meter[]} */
+    this.meters = [];
+    /** @type {HTMLElement[][]} */
+    this.links = [];
+    /** @type {HTMLButtonElement[]} */
+    this.cables = [];
+    this.facts = element("dl", { class: "facts" });
+    this.guess = element("p", { class: "guess" });
+    /** @param {() => void} act */
+    const button = (act) => element("button", { type: "button", onclick: act });
+    this.power = button(() => deeds.power(this.port, !this.tile?.powered));
+    this.freeze = button(() => deeds.freeze(this.port, !this.tile?.frozen));
+    this.reset = button(() => deeds.reset(this.port));
+    this.pull = button(() => deeds.pull(this.port));
+    this.reset.textContent = "Reset";
+    this.pull.textContent = "Pull out";
+  }
+
+  /** @param {string | null} port */
+  show(port) {
+    this.root.hidden = port === null;
+    this.port = port ?? "";
+    this.shape = "";
+    this.update();
+  }
+
+  get tile() {
+    return this.tiles.byPort.get(this.port);
+  }
+
+  update() {
+    const { tile } = this;
+    if (this.root.hidden || !tile) return;
+    const shape = `${this.port} ${tile.channels} ${tile.classes} ${this.tiles.runs}`;
+    if (shape !== this.shape) {
+      this.shape = shape;
+      this.build(tile);
+    }
+    const look = tile.label === "" ? "nothing" : tile.label === "-" ? "a dash" : tile.label;
+    const sure = tile.margin === null ? "" : `, ${sureness(tile.margin)}`;
+    setText(this.guess, tile.powered ? `It shows ${look}${sure}` : "It has no power");
+    setText(this.power, tile.powered ? "Power off" : "Power on");
+    setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
+    this.freeze.disabled = this.reset.disabled = !tile.powered;
+    this.meters.forEach((meter, index) => meter.show(
+      tile.state.length ? tile.state[index] - MESSAGE_OFFSET : undefined,
+    ));
+    this.showLinks(tile);
+    this.showFacts(tile);
+  }
+
+  /** @param {Tile} tile */
+  build(tile) {
+    const { deeds } = this;
+    const { looks } = this.tiles;
+    const hidden = Math.max(0, tile.channels - tile.classes);
+    this.meters = Array.from({ length: tile.channels }, (_, index) => {
+      const look = index < hidden ? undefined : looks[index - hidden];
+      return new Meter(look ? look.label : String(index + 1), look && cssColour(look.rgb));
+    });
+    const close = element("button", { type: "button", class: "round plain", "aria-label": "Close", onclick: () => deeds.select(null) }, "×");
+    this.links = SIDE_NAMES.map(() => Array.from({ length: 3 }, () => element("td")));
+    this.cables = SIDE_NAMES.map((_, side) => element("button", { type: "button", onclick: () => {
+      const now = this.tile;
+      if (now) deeds.cut(now.port, SIDES[side], !this.tiles.isCut(now, side));
+    } }));
+    const table = element("table", { class: "links" },
+      element("thead", {}, element("tr", {}, ...["Side", "Neighbour", "Heard", "Lost", "Cable"].map((name) => element("th", { scope: "col" }, name)))),
+      element("tbody", {}, ...SIDE_NAMES.map((name, side) => element("tr", {},
+        element("th", { scope: "row" }, name), ...this.links[side], element("td", {}, this.cables[side])))));
+    const scores = element("ul", { class: "meters scores", "aria-label": "Scores of the classes" }, ...this.meters.slice(hidden).map((meter) => meter.row));
+    const others = element("ul", { class: "meters", "aria-label": "Hidden channels" }, ...this.meters.slice(0, hidden).map((meter) => meter.row));
+    this.root.replaceChildren(
+      element("header", {}, element("h2", {}, `Tile ${tile.number}`), close),
+      this.guess,
+      element("div", { class: "deeds" }, this.pull, this.power, this.freeze, this.reset),
+      element("h3", {}, "What it thinks"), scores,
+      element("h3", {}, "Hidden channels"), others,
+      element("h3", {}, "Links"), table,
+      element("h3", {}, "Counters"), this.facts,
+    );
+  }
+
+  /** @param {Tile} tile */
+  showLinks(tile) {
+    SIDE_NAMES.forEach((name, side) => {
+      const link = tile.link[SIDES[side]];
+      const other = this.tiles.neighbour(tile, side);
+      const [neighbour, heard, lost] = this.links[side];
+      setText(neighbour, other ? `tile ${other.number}` : "none");
+      const isKnown = link && (other || link.received > 0);
+      setText(heard, isKnown ? String(link.received) : "");
+      setText(lost, isKnown ? String(link.lost + link.corrupt) : "");
+      const cable = this.cables[side];
+      const isCut = tile.place !== null && this.tiles.isCut(tile, side);
+      cable.hidden = !other;
+      setText(cable, isCut ? "Mend" : "Cut");
+      cable.setAttribute("aria-label", `${isCut ? "Mend" : "Cut"} the cable, ${name.toLowerCase()}`);
+    });
+  }
+
+  /** @param {Tile} tile */
+  showFacts(tile) {
+    const { time } = tile;
+    const facts = [
+      ["Updates", String(tile.updates)],
+      ["Period", tile.periodMs ? `${tile.periodMs} ms` : ""],
+      ["Up for", `${(tile.uptimeMs / 1000).toFixed(1)} s`],
+      ["Computes", time ? `${(time.computeUs / 1000).toFixed(1)} ms an update` : ""],
+      ["Awake", time ? `${(time.awakePermille / 10).toFixed(0)} % of the time` : ""],
+      ["Stack", time ? `${time.stackUnused} bytes never used` : ""],
+      ["Model", tile.modelId],
+      ["Error", tile.error],
+    ].filter(([, value]) => value !== "");
+    if (this.facts.childElementCount !== facts.length * 2) {
+      this.facts.replaceChildren(...facts.flatMap(([name]) => [element("dt", {}, name), element("dd")]));
+    }
+    facts.forEach(([name, value], index) => {
+      setText(this.facts.children[2 * index], name);
+      setText(this.facts.children[2 * index + 1], value);
+    });
+  }
+}
+
+/** @param {number} margin the best score less the second best, 0..254 */
+function sureness(margin) {
+  const words = margin < 8 ? "hardly sure" : margin < 32 ? "fairly sure" : "sure";
+  return `${words} (margin ${margin})`;
+}

@@ -1,0 +1,72 @@
+// One tile as the board looks: its digit, its light, the lamps of its links, its counters.
+
+/** @import { Tile } from "../stream/tiles.js" */
+import { SIDES } from "../stream/source.js";
+import { cssColour } from "../stream/led.js";
+import { element, setText, svg } from "./dom.js";
+
+// A digit of 100 x 100, segments a to g, and the point.
+const SEGMENTS = [
+  "M36 20H64", "M69 25V45", "M69 55V75", "M36 80H64", "M31 55V75", "M31 25V45", "M37 50H63",
+];
+const SIDE_WORDS = ["north", "east", "south", "west"];
+/** Where the lamps are. */
+const LAMPS = [[50, 8], [92, 50], [50, 92], [8, 50]];
+
+export class TileView {
+  /** @param {Tile} tile */
+  constructor(tile) {
+    this.port = tile.port;
+    this.glow = svg("g", { class: "glow" });
+    this.lit = svg("g", { class: "lit" });
+    const unlit = svg("g", { class: "unlit" }, ...SEGMENTS.map((d) => svg("path", { d })));
+    this.lamps = LAMPS.map(([cx, cy]) => svg("circle", { cx, cy, r: 2.6, class: "lamp" }));
+    this.id = svg("text", { x: 13, y: 17, class: "id" });
+    this.counter = svg("text", { x: 87, y: 91, class: "counter" });
+    this.face = svg(
+      "svg", { viewBox: "0 0 100 100", "aria-hidden": "true" },
+      unlit, this.glow, this.lit, ...this.lamps, this.id, this.counter,
+    );
+    this.mark = element("span", { class: "state-mark", "aria-hidden": "true" });
+    this.button = element("button", { type: "button", class: "tile", tabindex: -1, "data-port": tile.port }, this.mark);
+    this.button.append(this.face);
+    this.segments = -1;
+    this.said = "";
+  }
+
+  /** @param {Tile} tile @param {boolean} isSelected */
+  update(tile, isSelected) {
+    const colour = cssColour(tile.rgb);
+    if (this.segments !== tile.segments) {
+      this.segments = tile.segments;
+      const d = SEGMENTS.filter((_, bit) => (tile.segments >> bit) & 1).join("");
+      for (const layer of [this.glow, this.lit]) layer.replaceChildren(svg("path", { d }));
+    }
+    if (this.button.style.getPropertyValue("--led") !== colour) {
+      this.button.style.setProperty("--led", colour);
+      this.button.classList.toggle("dark", tile.rgb.every((part) => part === 0));
+    }
+    this.lamps.forEach((lamp, side) => lamp.classList.toggle("on", tile.leds[side] === SIDES[side]));
+    setText(this.id, String(tile.number));
+    setText(this.counter, tile.powered ? String(tile.updates) : "");
+    const mark = !tile.powered ? "off" : tile.frozen ? "frozen" : "";
+    this.button.dataset.state = mark;
+    setText(this.mark, mark);
+    const words = describe(tile);
+    if (words !== this.said) {
+      this.said = words;
+      this.button.setAttribute("aria-label", words);
+    }
+    this.button.setAttribute("aria-pressed", String(isSelected));
+  }
+}
+
+/** What a screen reader says of a tile. @param {Tile} tile */
+function describe(tile) {
+  const links = SIDE_WORDS.filter((_, side) => tile.leds[side] === SIDES[side]);
+  const place = tile.place ? `, row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : "";
+  if (!tile.powered) return `Tile ${tile.number}${place}, no power`;
+  const shows = tile.label === "" ? "shows nothing yet" : tile.label === "-" ? "shows a dash" : `shows ${tile.label}`;
+  const linked = links.length ? `linked ${links.join(", ")}` : "no links";
+  return `Tile ${tile.number}${place}, ${shows}, ${linked}${tile.frozen ? ", frozen" : ""}`;
+}

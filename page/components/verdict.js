@@ -1,0 +1,66 @@
+// One sentence: what the tiles think together.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+import { known } from "../stream/address.js";
+import { byId, setText } from "./dom.js";
+
+// A sentence that stands so long is said aloud.
+const SETTLED_MS = 1200;
+
+/** @param {string} label */
+const named = (label) => (label === "-" ? "a dash" : label);
+
+/**
+ * The sentence, and the label that most tiles show.
+ * @param {Tiles} tiles
+ * @returns {{text: string, label: string, agreed: boolean}}
+ */
+export function verdictOn(tiles) {
+  const { counts, total } = tiles.count();
+  const dark = counts.get("") ?? 0;
+  counts.delete("");
+  const ranked = [...counts].sort((a, b) => b[1] - a[1]);
+  if (total === 0) {
+    const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
+    const boot = tiles.laid().length > 0 && tiles.changes.length === 0;
+    return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
+  }
+  if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };
+  const [label, most] = ranked[0];
+  if (most === total) {
+    const who = total === 1 ? "One tile shows" : `All ${total} tiles show`;
+    const drawn = known(tiles.laid().map((tile) => tile.place), tiles.drawings);
+    const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
+    return { text: `${who} ${named(label)}${but}`, label, agreed: true };
+  }
+  const waiting = dark ? `, ${dark} ${dark === 1 ? "boots" : "boot"}` : "";
+  return { text: `${most} of ${total} show ${named(label)}${waiting}`, label, agreed: false };
+}
+
+export class Verdict {
+  constructor() {
+    this.line = byId("verdict");
+    this.clock = byId("clock");
+    this.said = "";
+    this.text = "";
+    this.since = 0;
+    this.version = -1;
+  }
+
+  /** @param {Tiles} tiles @param {number} now */
+  update(tiles, now) {
+    if (tiles.version !== this.version) {
+      this.version = tiles.version;
+      const { text, agreed } = verdictOn(tiles);
+      if (text !== this.text) this.since = now;
+      this.text = text;
+      setText(this.line, text);
+      this.line.classList.toggle("agreed", agreed);
+    }
+    if (this.text !== this.said && now - this.since > SETTLED_MS) {
+      this.said = this.text;
+      setText(byId("announce"), this.text);
+    }
+    setText(this.clock, `${tiles.time.toFixed(tiles.pace.speed && tiles.pace.speed < 0.02 ? 4 : 2)} s`);
+  }
+}

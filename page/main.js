@@ -1,0 +1,161 @@
+// The page: one source of events, one picture of the tiles, and the hands that reach in.
+
+/** @import { Command, Drawing, Place, StreamEvent } from "./stream/source.js" */
+/** @import { Start } from "./stream/address.js" */
+import { Agreement } from "./components/agreement.js";
+import { Bar } from "./components/bar.js";
+import { Board } from "./components/board.js";
+import { byId } from "./components/dom.js";
+import { Drawings } from "./components/drawings.js";
+import { Inspector } from "./components/inspector.js";
+import { listenToKeys } from "./components/keys.js";
+import { Notice } from "./components/notice.js";
+import { Verdict } from "./components/verdict.js";
+import { cellsOf, known, readAddress, standingFaults, writeAddress } from "./stream/address.js";
+import { openSocket } from "./stream/socket.js";
+import { surprise } from "./stream/surprise.js";
+import { Tiles } from "./stream/tiles.js";
+
+const tiles = new Tiles();
+/** @type {Start | null} */
+let start = null;
+let noise = 0;
+
+/** @param {Command} command */
+const send = (command) => source.send(command);
+
+const deeds = {
+  /** @param {string | null} port */
+  select(port) {
+    const chosen = port === board.selected ? null : port;
+    board.select(chosen);
+    inspector.show(chosen);
+  },
+  /** @param {Place} place */
+  put: ([row, col]) => send({ do: "put", row, col }),
+  /** @param {string} port */
+  pull(port) {
+    if (port === board.selected) deeds.select(null);
+    send({ do: "pull", port });
+  },
+  /** @param {string} port @param {Place} place */
+  move: (port, [row, col]) => send({ do: "move", port, row, col }),
+  /** @param {string} port @param {string} side @param {boolean} on */
+  cut: (port, side, on) => send({ do: "cut", port, side, on }),
+  /** @param {string} port @param {boolean} on */
+  power: (port, on) => send({ do: "power", port, on }),
+  /** @param {string} port @param {boolean} on */
+  freeze: (port, on) => send({ do: "freeze", port, on }),
+  /** @param {string} port */
+  reset: (port) => send({ do: "reset", port }),
+  /** @param {import("./components/hands.js").Tool} tool */
+  tool(tool) {
+    board.hands.tool = tool;
+    byId("board").dataset.tool = tool;
+  },
+  /** @param {number} speed @param {boolean} paused */
+  pace(speed, paused) {
+    if (start) start.speed = speed;
+    send({ do: "pace", speed, paused });
+  },
+  step: () => send({ do: "step", seconds: tiles.stepS }),
+  restart() {
+    if (!start) return;
+    remember();
+    start.until = null;
+    open(start);
+  },
+  /** @param {number} loss */
+  noise(loss) {
+    noise = loss;
+    bar.showNoise(loss);
+    send({ do: "noise", loss });
+  },
+  surprise() {
+    for (const command of surprise(tiles, Math.random)) send(command);
+  },
+};
+
+const notice = new Notice(byId("notice"));
+const board = new Board(byId("board"), tiles, deeds);
+const inspector = new Inspector(byId("inspector"), tiles, deeds);
+const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
+const agreement = new Agreement(tiles);
+const verdict = new Verdict();
+const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing));
+listenToKeys(bar, deeds);
+
+/** Another drawing, with its middle where that of the tiles is. @param {Drawing} drawing */
+function slideUnder(drawing) {
+  const { view } = board;
+  const row = view.top + Math.round((view.rows - drawing.rows.length) / 2);
+  const col = view.left + Math.round((view.cols - drawing.rows[0].length) / 2);
+  send({ do: "arrange", cells: cellsOf(drawing.rows).map(([r, c]) => [r + row, c + col]) });
+}
+
+/** Begins a run. @param {Start} wanted */
+function open(wanted) {
+  deeds.select(null);
+  noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
+  bar.showNoise(noise);
+  const { cells, seed, speed, faults, spread, until } = wanted;
+  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until });
+}
+
+/** Notes what lies on the board now, in `start` and in the address. */
+function remember() {
+  checkModel();
+  const laid = tiles.laid();
+  if (!start || !laid.length) return;
+  start.cells = laid.map((tile) => tile.place);
+  const isUp = tiles.time > start.spread + 0.1;
+  if (isUp) start.faults = standingFaults(tiles, noise);
+  const address = writeAddress(start, tiles.drawings);
+  if (address !== location.search) history.replaceState(null, "", address + location.hash);
+  drawings.mark(known(start.cells, tiles.drawings)?.name ?? "");
+}
+
+/** @param {StreamEvent[]} events */
+function show(events) {
+  const now = performance.now();
+  const first = events.find((event) => event.stream !== undefined);
+  tiles.take(events);
+  if (first) {
+    drawings.fill(tiles.drawings, (label) => tiles.look(label).rgb);
+    start = start ?? readAddress(location.search, tiles.drawings);
+    open(start);
+  }
+  if (tiles.refused) {
+    notice.say(tiles.refused);
+    tiles.refused = "";
+    if (tiles.runs === 0 && start?.faults.length) open((start = { ...start, faults: [] }));
+  }
+  board.update(now);
+  inspector.update();
+  bar.update();
+  verdict.update(tiles, now);
+  agreement.update(now);
+}
+
+/** Says so where the address was made with another model. */
+function checkModel() {
+  const modelId = tiles.laid().find((tile) => tile.modelId)?.modelId;
+  if (!start || !modelId || start.model === modelId) return;
+  if (start.model) notice.say(`The link is of model ${start.model}; these tiles run ${modelId}, and may differ.`);
+  start.model = modelId;
+}
+
+const token = new URLSearchParams(location.hash.slice(1)).get("token");
+const url = new URL("stream", location.href);
+url.protocol = url.protocol.replace("http", "ws");
+url.search = token ? new URLSearchParams({ token }).toString() : "";
+url.hash = "";
+
+const source = openSocket(url.href, {
+  onEvents: show,
+  onOpen: () => notice.clear(),
+  onLost: (seconds) => notice.stay(`The tiles are out of reach; trying again in ${Math.ceil(seconds)} s`),
+});
+
+setInterval(remember, 500);
+document.addEventListener("visibilitychange", () => send({ do: "rest", on: document.hidden }));

@@ -1,0 +1,105 @@
+// The address of the page: what a run begins with, so that a reload or a shared link gives the same run.
+
+/** @import { Drawing, Place } from "./source.js" */
+/** @import { Tiles } from "./tiles.js" */
+import { SIDES } from "./source.js";
+
+/**
+ * @typedef {{cells: Place[], seed: number, speed: number, faults: string[], spread: number, until: number | null,
+ *   model: string}} Start
+ */
+
+export const DEFAULT_SPEED = 0.1;
+export const DEFAULT_SPREAD_S = 0.25;
+const FIRST_DRAWING = "8";
+
+/** Places of the tiles of a drawing, whose rows have `#` or `1` for a tile. @param {string[]} rows */
+export function cellsOf(rows) {
+  /** @type {Place[]} */
+  const cells = [];
+  rows.forEach((row, r) => [...row].forEach((mark, c) => {
+    if (mark === "#" || mark === "1") cells.push([r, c]);
+  }));
+  return cells;
+}
+
+/** The drawing of some places, cropped, in rows of 1 and 0. @param {Place[]} cells */
+export function rowsOf(cells) {
+  const top = Math.min(...cells.map(([row]) => row));
+  const left = Math.min(...cells.map(([, col]) => col));
+  const height = Math.max(...cells.map(([row]) => row)) - top + 1;
+  const width = Math.max(...cells.map(([, col]) => col)) - left + 1;
+  const rows = Array.from({ length: height }, () => Array(width).fill("0"));
+  for (const [row, col] of cells) rows[row - top][col - left] = "1";
+  return rows.map((row) => row.join(""));
+}
+
+/** The offered drawing with these places. @param {Place[]} cells @param {Drawing[]} drawings */
+export function known(cells, drawings) {
+  if (!cells.length) return undefined;
+  const rows = rowsOf(cells).join();
+  return drawings.find((drawing) => rowsOf(cellsOf(drawing.rows)).join() === rows);
+}
+
+/** @param {string | null} text @param {number} low @param {number} high @param {number} otherwise */
+function numberIn(text, low, high, otherwise) {
+  const value = text === null || text === "" ? NaN : Number(text);
+  return value >= low && value <= high ? value : otherwise;
+}
+
+/**
+ * What the address asks for; what it does not say, or says wrongly, is as usual.
+ * @param {string} query from `?` on
+ * @param {Drawing[]} drawings
+ * @returns {Start}
+ */
+export function readAddress(query, drawings) {
+  const given = new URLSearchParams(query);
+  const wanted = given.get("shape");
+  const shape = drawings.find((one) => one.name === wanted) ??
+    drawings.find((one) => one.label === FIRST_DRAWING) ?? drawings[0];
+  const drawn = cellsOf((given.get("draw") ?? "").split("-"));
+  const until = numberIn(given.get("until"), 0, 86400, NaN);
+  return {
+    cells: drawn.length ? drawn : cellsOf(shape?.rows ?? ["#"]),
+    seed: Math.floor(numberIn(given.get("seed"), 0, Number.MAX_SAFE_INTEGER, 0)),
+    speed: numberIn(given.get("speed"), 0, 1024, DEFAULT_SPEED),
+    faults: given.getAll("fault").slice(0, 32),
+    spread: numberIn(given.get("spread"), 0, 3600, DEFAULT_SPREAD_S),
+    until: Number.isNaN(until) ? null : until,
+    model: given.get("model") ?? "",
+  };
+}
+
+/** The faults that stand now, as `tilenca emulate --fault` takes them. @param {Tiles} tiles @param {number} noise */
+export function standingFaults(tiles, noise) {
+  const laid = tiles.laid();
+  const faults = noise > 0 ? [`loss=${Number(noise.toFixed(3))}`] : [];
+  laid.forEach((tile, index) => {
+    if (!tile.powered) faults.push(`off@${index + 1}`);
+    for (const side of [1, 2]) {
+      const other = tiles.neighbour(tile, side);
+      if (other && tiles.isCut(tile, side)) faults.push(`cut@${index + 1}${SIDES[side]}`);
+    }
+  });
+  return faults;
+}
+
+/**
+ * The query of an address that begins with this.
+ * @param {Start} start
+ * @param {Drawing[]} drawings
+ */
+export function writeAddress(start, drawings) {
+  const query = new URLSearchParams();
+  const drawing = known(start.cells, drawings);
+  if (drawing) query.set("shape", drawing.name);
+  else if (start.cells.length) query.set("draw", rowsOf(start.cells).join("-"));
+  query.set("seed", String(start.seed));
+  query.set("speed", String(start.speed));
+  for (const fault of start.faults) query.append("fault", fault);
+  if (start.spread !== DEFAULT_SPREAD_S) query.set("spread", String(start.spread));
+  if (start.until !== null) query.set("until", String(start.until));
+  if (start.model) query.set("model", start.model);
+  return `?${query.toString().replaceAll("%2F", "/").replaceAll("%40", "@").replaceAll("%3D", "=")}`;
+}

@@ -1,0 +1,42 @@
+// What stands behind the page: anything that tells of tiles in the stream's events and takes its commands
+// (docs/PROTOCOL.md section 7). A server with the native emulator is one; components know none of them.
+
+/**
+ * @typedef {{label: string, segments: number, rgb: number[]}} Look
+ * @typedef {{name: string, label: string, rows: string[]}} Drawing
+ * @typedef {[number, number]} Place
+ *
+ * One event: a time, and exactly one of the other subjects.
+ * @typedef {{
+ *   time: number, port?: string, side?: string,
+ *   stream?: number, source?: string, looks?: Look[], drawings?: Drawing[], period_ms?: number | null,
+ *   most_tiles?: number, most_place?: number,
+ *   run?: {seed: number, shape: string, tiles: number},
+ *   pace?: {speed: number, paused: boolean, share: number},
+ *   place?: Place | null,
+ *   cable?: "whole" | "cut",
+ *   raw?: string,
+ *   open?: boolean, reason?: string,
+ *   display?: {segments: number, rgb: number[], leds: string},
+ *   frame?: string,
+ *   refused?: string,
+ * }} StreamEvent
+ *
+ * @typedef {{do: string, [field: string]: unknown}} Command
+ *
+ * @typedef {{
+ *   send: (command: Command) => void,
+ *   close: () => void,
+ * }} Source
+ *
+ * @typedef {{
+ *   onEvents: (events: StreamEvent[]) => void,
+ *   onOpen: () => void,
+ *   onLost: (seconds: number) => void,
+ * }} Listener
+ */
+
+export const STREAM_VERSION = 1;
+export const SIDES = "NESW";
+/** Rows and columns from a tile to its neighbour on each side. @type {Place[]} */
+export const OFFSETS = [[-1, 0], [0, 1], [1, 0], [0, -1]];

@@ -1,0 +1,32 @@
+"""A browser, a server, and a visit of the one to the other."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from support.browser import Visit, new_visit, running_browser
+from support.page_server import PageServer, page_server
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with running_browser() as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def server(browser: Browser, firmware: Path) -> Iterator[PageServer]:
+    with page_server(firmware) as running:
+        yield running
+
+
+@pytest.fixture
+def visit(browser: Browser) -> Iterator[Visit]:
+    """On a laptop. Nothing may go wrong behind the scenes, and nothing may be asked of anybody else."""
+    with new_visit(browser) as visit:
+        yield visit
+    addresses = {url.split("/")[2].split(":")[0] for url in visit.requests if url.startswith("http")}
+    assert visit.complaints == []
+    assert addresses <= {"127.0.0.1"}

@@ -1,0 +1,95 @@
+"""The outbox: a client that reads gets all, one that is slow gets the latest, and nothing grows."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tilenca.page.outbox import MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox
+from tilenca.protocol import stream
+from tilenca.protocol.sentences import framed
+
+PORTS = [f"tile-{number:02d}" for number in range(1, 5)]
+
+
+def tile(port: str, updates: int) -> stream.StreamEvent:
+    return stream.raw_event(updates, port, framed(f"TILE,1,{updates},{updates},4,4,3,----,80").strip())
+
+
+def link(port: str, side: str, sent: int) -> stream.StreamEvent:
+    return stream.raw_event(sent, port, framed(f"LINK,1,{sent},{side},{sent},0,0,0,0,,0,,").strip())
+
+
+def test_events_come_in_their_order() -> None:
+    outbox = Outbox()
+    events = [stream.place_event(0, port, (0, 1)) for port in PORTS] + [tile(port, 1) for port in PORTS]
+    outbox.put(events)
+    assert outbox.take() == (1, events)
+    assert not outbox.may_send
+
+
+def test_of_what_waits_the_latest_counts() -> None:
+    outbox = Outbox()
+    for updates in range(1000):
+        outbox.put([tile(port, updates) for port in PORTS])
+        outbox.put([link("tile-01", "NESW"[updates % 4], updates)])
+        outbox.put([stream.pace_event(updates, 1, False, 1)])
+    _, events = outbox.take()
+    assert events == [
+        link("tile-01", "N", 996), link("tile-01", "E", 997), link("tile-01", "S", 998),
+        *(tile(port, 999) for port in PORTS), link("tile-01", "W", 999), stream.pace_event(999, 1, False, 1),
+    ]  # fmt: skip
+
+
+def test_frames_and_refusals_have_an_end() -> None:
+    outbox = Outbox()
+    outbox.put([stream.frame_event(n, "tile-01", "E", b"\1") for n in range(5 * MOST_FRAMES)])
+    outbox.put([stream.refused_event(n, "no") for n in range(5 * MOST_REFUSALS)])
+    _, events = outbox.take()
+    assert len([event for event in events if "frame" in event]) == MOST_FRAMES
+    assert [event["time"] for event in events if "refused" in event] == list(range(32, 40))
+
+
+def test_a_new_run_makes_all_before_it_void() -> None:
+    outbox = Outbox()
+    first, run = stream.stream_event("emulated"), stream.run_event(0, {})
+    outbox.put([first, tile("tile-01", 5), run, tile("tile-02", 1)])
+    assert outbox.take()[1] == [first, run, tile("tile-02", 1)]
+
+
+def test_a_client_that_does_not_look_is_sent_no_more() -> None:
+    outbox = Outbox()
+    for number in range(1, MOST_UNSEEN + 1):
+        outbox.put([tile("tile-01", number)])
+        assert outbox.may_send
+        assert outbox.take()[0] == number
+    outbox.put([tile("tile-01", 9)])
+    assert not outbox.may_send
+    for wrong in (0, MOST_UNSEEN + 1, 2**50):
+        outbox.seen(wrong)
+        assert not outbox.may_send
+    outbox.seen(1)
+    assert outbox.may_send
+
+
+events = st.one_of(
+    st.builds(tile, st.sampled_from(PORTS), st.integers(0, 9)),
+    st.builds(link, st.sampled_from(PORTS), st.sampled_from("NESW"), st.integers(0, 9)),
+    st.builds(stream.place_event, st.just(0.0), st.sampled_from(PORTS), st.none()),
+    st.builds(
+        stream.cable_event, st.just(0.0), st.sampled_from(PORTS), st.sampled_from("NESW"), st.booleans()
+    ),
+    st.builds(stream.raw_event, st.just(0.0), st.sampled_from(PORTS), st.binary(max_size=9)),
+    st.builds(stream.frame_event, st.just(0.0), st.sampled_from(PORTS), st.sampled_from("NESW"), st.binary()),
+)
+
+
+@given(st.lists(events, max_size=80))
+def test_the_last_of_everything_always_arrives(given_events: list[stream.StreamEvent]) -> None:
+    outbox = Outbox()
+    for event in given_events:
+        outbox.put([event])
+    taken = outbox.take()[1] if given_events else []
+    assert taken == sorted(
+        taken, key=lambda event: max(i for i, one in enumerate(given_events) if one is event)
+    )
+    if given_events:
+        assert taken[-1] == given_events[-1]

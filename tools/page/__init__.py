@@ -1,0 +1,1 @@
+"""Checks of the page's JavaScript, and the pictures of it in the documents."""
