@@ -30,12 +30,9 @@ HELLO_S = 1.0
 # A tile that takes this much longer than its updates should take will never finish.
 PATIENCE = 1.5
 PATIENCE_S = 3.0
-# An update's sentence follows the display within this time; the next update comes later.
-TELLING_MS = 5.0
 # The stock bootloader gives way to the program after a second without a byte; see docs/EMULATOR.md.
 BOOTLOADER_S = 1.5
 BYTE_S = 10 / 115200
-FRAME_COUNTERS = ("sent", "received", "corrupt", "lost")
 
 
 @dataclass(frozen=True)
@@ -216,8 +213,7 @@ class Emulation:
         return [tile.index for tile in self.array if tile.powered]
 
     def _updates(self, index: int) -> int:
-        reports = self._voices[index].reports
-        return reports[-1].updates if reports else 0
+        return self._voices[index].updates
 
     def label(self, segments: int) -> str:
         """The character that lit segments show; "" for a dark display, "?" for none."""
@@ -270,15 +266,9 @@ class Emulation:
         moment_s = self._agreed_moment_s()
         if moment_s is None:
             return None
-        done = []
-        for index in self._standing():
-            voice = self._voices[index]
-            started_s = moment_s if voice.started_s is None else voice.started_s
-            uptime_ms = (moment_s - started_s) * 1000 * (1 + self.ppm[index] * 1e-6) + TELLING_MS
-            done.append(
-                max((report.updates for report in voice.reports if report.uptime_ms <= uptime_ms), default=0)
-            )
-        return min(done)
+        return min(
+            self._voices[index].updates_at(moment_s, 1 + self.ppm[index] * 1e-6) for index in self._standing()
+        )
 
     def report(self, wall_s: float) -> dict[str, Any]:
         """The JSON document of one shape."""
@@ -298,7 +288,6 @@ class Emulation:
 
     def _tile_report(self, tile: EmulatedTile) -> dict[str, Any]:
         row, col = self.shape.cells[tile.index]
-        links = self._voices[tile.index].links.values()
         return {
             "id": tile.index + 1,
             "row": row,
@@ -306,5 +295,5 @@ class Emulation:
             "shown": self.shown(tile),
             "rgb": list(tile.rgb),
             "updates": self._updates(tile.index),
-            "frames": {counter: sum(getattr(link, counter) for link in links) for counter in FRAME_COUNTERS},
+            "frames": self._voices[tile.index].frames(),
         }

@@ -11,12 +11,11 @@ from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
 EEPROM_BYTES = 4096
 RECEIVE_CHUNK = 4096
 MOST_TILES = 4096
-# Where an ELF file of AVR puts data memory.
-DATA_SPACE = 0x800000
+DATA_SPACE = 0x800000  # where an ELF file of AVR puts data memory
 
 
 class EmulatedTile:
-    """One tile of an array, as eyes, fingers, cables and a debugger reach it. Made by `Array`."""
+    """See above. Made by `Array`."""
 
     def __init__(self, array: Home, index: int) -> None:
         self._array = array
@@ -50,8 +49,7 @@ class EmulatedTile:
         count = self._call("tile_display_changes", 0, new("double[]", 0), new("uint8_t[]", 0), 0)
         times, segments = new("double[]", count), new("uint8_t[]", count)
         self._call("tile_display_changes", 0, times, segments, count)
-        changes = zip(numbers(times, count), numbers(segments, count), strict=True)
-        return [DisplayChange(time, lit) for time, lit in changes]
+        return [DisplayChange(*one) for one in zip(numbers(times, count), numbers(segments, count), strict=True)]
 
     @property
     def fault(self) -> str:
@@ -133,9 +131,8 @@ class EmulatedTile:
     def read_serial_timed(self) -> list[tuple[float, int]]:
         """Like `read_serial`, each byte with the time in seconds at which it had arrived."""
         received: list[tuple[float, int]] = []
-        room = RECEIVE_CHUNK
-        values, times = new("uint8_t[]", room), new("double[]", room)
-        while count := self._call("tile_receive", values, times, room):
+        values, times = new("uint8_t[]", RECEIVE_CHUNK), new("double[]", RECEIVE_CHUNK)
+        while count := self._call("tile_receive", values, times, RECEIVE_CHUNK):
             received.extend(zip(numbers(times, count), numbers(values, count), strict=True))
         return received
 
