@@ -49,7 +49,7 @@ class EmulatedTile:
         count = self._call("tile_display_changes", 0, new("double[]", 0), new("uint8_t[]", 0), 0)
         times, segments = new("double[]", count), new("uint8_t[]", count)
         self._call("tile_display_changes", 0, times, segments, count)
-        return [DisplayChange(*one) for one in zip(numbers(times, count), numbers(segments, count), strict=True)]
+        return list(map(DisplayChange, numbers(times, count), numbers(segments, count)))
 
     @property
     def fault(self) -> str:
