@@ -69,7 +69,7 @@ nitpick_ignore_regex = [
     ("py:.*", rf"({'|'.join(names)})(\..*)?")
     for names in [
         ["argparse", "collections", "concurrent", "contextlib", "ctypes", "enum", "json", "os", "pathlib"],
-        ["queue", "random", "re", "subprocess", "threading", "types", "typing", "_io", "io"],
-        ["jinja2", "matplotlib", "np", "numpy", "PIL", "npt", "rich", "serial", "torch"],
+        ["queue", "random", "re", "socket", "subprocess", "threading", "types", "typing", "_io", "io"],
+        ["jinja2", "matplotlib", "np", "numpy", "PIL", "npt", "rich", "serial", "starlette", "torch"],
     ]
 ]
