@@ -18,13 +18,13 @@ PYPROJECT = ROOT / "pyproject.toml"
 # The extras of pyproject.toml that each level of the set-up needs.
 EXTRAS = {
     "demo": ["firmware"],
-    "train": ["train"],
+    "train": ["train", "sweep"],
     "test": ["test", "wheel"],
     "check": ["check"],
     "docs": ["docs"],
 }
 # What they take on the disk, roughly: it says how long the download may be.
-SIZE_MB = {"demo": 110, "train": 970, "test": 15, "check": 100, "docs": 80}
+SIZE_MB = {"demo": 110, "train": 1180, "test": 15, "check": 100, "docs": 80}
 # The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
+from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_shapes_argument, count, seed, whole
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
@@ -143,7 +144,7 @@ def _metadata(args: argparse.Namespace) -> dict[str, object]:
     """The model's origin, as far as its configuration does not tell it."""
     return {
         "command": _command(args),
-        "shapes": [_place(path) for path in args.shapes],
+        "shapes": [place_of(path) for path in args.shapes],
         "commit": _commit(),
         "recipe_name": args.recipe,
     }
@@ -217,16 +218,7 @@ def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
     return InterruptedRunError(f"interrupted {where}; continue with: {_command(args, str)} --resume")
 
 
-def _place(path: Path) -> str:
-    """A path as seen from the project, or from what comes with tilenca, if it is inside."""
-    full = path.resolve()
-    for root in (paths.PROJECT, paths.ROOT):
-        if root is not None and full.is_relative_to(root.resolve()):
-            return str(full.relative_to(root.resolve()))
-    return str(path)
-
-
-def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) -> str:
+def _command(args: argparse.Namespace, place: Callable[[Path], str] = place_of) -> str:
     """The command that makes this model."""
     recipe = find_recipe(args.recipe)
     words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]

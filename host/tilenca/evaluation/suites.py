@@ -11,6 +11,8 @@ from itertools import chain
 
 import numpy as np
 
+from tilenca.base.errors import UsageError
+from tilenca.model.file import Model
 from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
@@ -93,6 +95,22 @@ class Aims:
     varied: bool = False
 
 
+def recorded_aims(model: Model) -> Aims:
+    """The aims in the model's metadata; its drawings alone where the metadata have none.
+
+    Raises:
+        UsageError: the metadata are damaged.
+    """
+    recipe = model.metadata.get("recipe", {})
+    stretch, damaged, unknown, varied = (
+        recipe.get(name, default)
+        for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0), ("varied", 0.0))
+    )
+    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
+        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
+    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0)
+
+
 def make_suite(
     task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
 ) -> Suite:
@@ -117,14 +135,14 @@ def make_suite(
         drawn,
         tuple(_size_cases(task, first, sizes, aimed)),
         tuple(_damaged_cases(task, first, aimed, aims, split)),
-        tuple(_unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
+        tuple(unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
-        _varied_case(task, aims, seed, split),
+        varied_case(task, aims, seed, split),
     )
 
 
-def _varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
-    """Variants of forms that training never draws."""
+def varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
+    """Variants of forms that training never draws; None where the classes are just their drawings."""
     if task.variants is None:
         return None
     random = np.random.default_rng(seed)
@@ -144,7 +162,8 @@ def _varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | No
     return Case("varied", name, drawings, LARGE_STEPS, held_out=True, aimed=aims.varied)
 
 
-def _steps(size: Size) -> int:
+def steps_at(size: Size) -> int:
+    """The number of steps after which a drawing of this size is asked for its answer."""
     area = size[0] * size[1]
     return SHORT_STEPS if area <= LARGE else LARGE_STEPS if area <= VERY_LARGE else VERY_LARGE_STEPS
 
@@ -153,7 +172,7 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     trained = _distinct(shape for size in aimed.trained for shape in at_size(first, size))
     trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
     if trained:
-        yield Case("trained", "all sizes trained on", task.of(trained), max(map(_steps, aimed.trained)))
+        yield Case("trained", "all sizes trained on", task.of(trained), max(map(steps_at, aimed.trained)))
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     for path in sizes.drawn:
@@ -164,7 +183,7 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     for size in new:
         if shapes := [shape for shape in _distinct(at_size(first, size)) if shape.rows not in seen]:
             # The aim is sizes up to half as large again as the trained ones, not more.
-            steps = _steps(size)
+            steps = steps_at(size)
             yield Case(
                 "held out" if steps <= LARGE_STEPS else "very large",
                 f"{size_name(size)}, never trained on",
@@ -185,8 +204,8 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
     """A larger size, and the largest."""
     wanted = _larger_sizes(task, sizes)
     for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
-        kind = "drawn" if _steps(size) <= SHORT_STEPS else "trained"
-        yield Case(kind, size_name(size), task.of(at_size(first, size)), _steps(size))
+        kind = "drawn" if steps_at(size) <= SHORT_STEPS else "trained"
+        yield Case(kind, size_name(size), task.of(at_size(first, size)), steps_at(size))
 
 
 def _damaged_cases(
@@ -195,7 +214,7 @@ def _damaged_cases(
     """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
     for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
         shapes = first if size is None else at_size(first, size)
-        steps = SHORT_STEPS if size is None else _steps(size)
+        steps = SHORT_STEPS if size is None else steps_at(size)
         known = known_of([*task.shapes, *shapes])
         height, width = size or task.largest
         kind = "damaged" if height * width < DAMAGED_LARGE else "damaged, large"
@@ -206,7 +225,7 @@ def _damaged_cases(
                 yield Case(kind, label, task.of(less), steps, held_out=new, aimed=aims.damaged)
 
 
-def _unknown_cases(
+def unknown_cases(
     task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, split: str
 ) -> Iterable[Case]:
     """Drawings of no class: neither known nor, where classes vary, so much like one that they could be it."""
