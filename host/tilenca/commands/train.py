@@ -16,7 +16,8 @@ from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
-from tilenca.commands.arguments import add_shapes_argument, count, seed, whole
+from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
+from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
@@ -57,9 +58,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="K",
         help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
     )
-    parser.add_argument(
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
         "--jobs", type=whole(1, 64), metavar="J", help="seeds to train at once (one for each processor)"
     )
+    add_scheduler_argument(where.add_argument)
     parser.add_argument(
         "--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)"
     )
@@ -126,13 +129,16 @@ def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
         Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources) for n in plan.seeds
     ]
     at_once = min(args.jobs or processors(), len(configs))
-    threads = max(1, processors() // at_once)
+    threads = max(1, processors() // at_once) if args.scheduler is None else 1
     jobs = [
         Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
     ]
     with show_training(plan.seeds, plan.recipe.iterations) as tell:
         try:
-            failures = train_side_by_side(jobs, at_once, tell)
+            if args.scheduler is None:
+                failures = train_side_by_side(jobs, at_once, tell)
+            else:
+                failures = train_on_cluster(jobs, args.scheduler, tell)
         except (InterruptedRunError, KeyboardInterrupt) as error:
             raise _interrupted(args, str(error) or "while training") from None
     for failure in failures:
