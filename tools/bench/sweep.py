@@ -28,7 +28,11 @@ from tilenca.sweep.run import run_sweep
 from tilenca.sweep.table import PARQUET, read_parquet, rows_of, write_parquet
 
 IMAGES = paths.ROOT / "docs" / "images"
-PICTURES = ("curves.svg", "times.svg", "heat.svg")
+PICTURES = {
+    "curves.svg": "Share of runs with all tiles right against lost messages: a curve for each share of dead tiles",
+    "heat.svg": "The same as a heat map",
+    "times.svg": "Median of the steps until all tiles are right and stay so",
+}
 OVERHEAD_MARKS = "<!-- overhead: made by `make bench`, do not edit -->", "<!-- /overhead -->"
 TABLE_MARKS = "<!-- table: made by `make sweep`, do not edit -->", "<!-- /table -->"
 ROUNDS = 3
@@ -188,6 +192,8 @@ def written_table(folder: Path) -> str:
                 if row["dead"] == dead
             ]
             lines.append(f"| {dead:.0%} | {' | '.join(shown)} |")
+    for name, about in PICTURES.items():
+        lines += ["", f"![{about}](images/sweep-{name})"]
     return "\n".join(lines)
 
 
