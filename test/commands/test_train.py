@@ -1,5 +1,6 @@
 """tilenca train: what it writes, says and refuses."""
 
+import argparse
 import json
 import os
 import signal
@@ -12,6 +13,7 @@ import pytest
 
 from support.training import train
 from tilenca import cli
+from tilenca.commands.train import add_arguments, report
 from tilenca.model.file import load_model
 
 WRITTEN = ("model.json", "weights.npz", "metrics.json", "history.csv", "README.md")
@@ -183,3 +185,20 @@ def test_a_full_disk_ends_training_with_one_line(
     assert said.err.splitlines().count(full) == 1
     assert "Traceback" not in said.err
     assert list(out.iterdir()) == []
+
+
+def test_the_worst_missed_targets_come_first_and_the_card_has_the_rest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [
+        {"name": f"row {n}", "steps": 60, "share": n / 20, "target": 0.9, "floor": 0.0, "holds": n >= 18,
+         "worst": {"shape": "4", "share": 0.0}}
+        for n in range(20)
+    ]  # fmt: skip
+    words = ["--shapes", "mine.toml", "--out", str(tmp_path), "--recipe", "quick"]
+    parser = argparse.ArgumentParser()
+    add_arguments(parser)
+    report(parser.parse_args(words), tmp_path, {"rows": rows, "targets_held": "2 of 20"}, 60.0)
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split(",")[0] for line in said[1:-1]] == [f"  missed: row {n}" for n in range(8)]
+    assert said[-1] == f"  and 10 more, all in {tmp_path / 'README.md'}"

@@ -2,10 +2,11 @@
 
 from itertools import product
 
+import numpy as np
 import pytest
 
 from tilenca.base import paths
-from tilenca.evaluation.best_guess import best_share, cuts_of, pieces
+from tilenca.evaluation.best_guess import best_share, cuts_of, guessed_share, pieces
 from tilenca.shapes.file import Shape, load_task
 
 PLUS = Shape("+", (".#.", "###", ".#."), "+")
@@ -57,3 +58,14 @@ def test_no_answers_to_the_pieces_of_three_digits_do_better() -> None:
         best = max(best, sum(c.weight for c in cuts if all(answers[p] == c.label for p in c.pieces)))
     assert best_share(shapes) == pytest.approx(best)
     assert best < 1
+
+
+def test_a_guess_takes_the_likeliest_drawing_that_could_leave_the_piece() -> None:
+    bar, ell = Shape("I", ("#", "#", "#"), "I"), Shape("L", ("#.", "#.", "##"), "L")
+    gone, left = 0.2, 0.8
+    # A column of two or three tiles is an I, for which fewer tiles must be dead; anything else is an L.
+    of_bar = left**3 + 2 * gone * left**2
+    of_ell = 1 - 2 * (gone * left**3 + gone**2 * left**2)
+    random = np.random.default_rng(1)
+    assert guessed_share([bar, ell], gone, 4000, random) == pytest.approx((of_bar + of_ell) / 2, abs=0.03)
+    assert guessed_share([bar, ell], 0.0, 50, random) == 1.0

@@ -33,7 +33,7 @@ def test_the_digits_are_trained_up_to_12x10_and_the_sizes_held_out_are_not() -> 
     ("sizes", "message"),
     [
         ("sizes = 3", "sizes must be a table"),
-        ('[sizes]\nform = "3x3"', "has no 'form'; it has from, to, more, held_out, drawn"),
+        ('[sizes]\nform = "3x3"', "did you mean 'from'"),
         ('[sizes]\nfrom = "3x3"', "one of from and to"),
         ('[sizes]\nfrom = "3x3"\nto = "3"', "to: '3' is not a size"),
         ('[sizes]\nfrom = "3x3"\nto = "0x7"', "to: '0x7' is not a size"),

@@ -33,7 +33,7 @@ DRAWER = generator()
 def test_nothing_that_is_held_out_is_drawn(kind: str) -> None:
     random = np.random.default_rng(2)
     drawn = {shape.rows for shape in task().shapes}
-    shapes = [DRAWER.draw(kind, random) for _ in range(150)]
+    shapes = [DRAWER.draw(kind, random) for _ in range(300)]
     assert all(split_of(shape.rows) == TRAINED for shape in shapes if shape.rows not in drawn)
     assert len({shape.rows for shape in shapes}) > 100
     assert max(len(shape.cells) for shape in shapes) <= DRAWER.most_tiles

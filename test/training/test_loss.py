@@ -24,6 +24,14 @@ def test_the_loss_is_the_squared_error_of_the_scores_as_a_mean_over_the_cells() 
     assert loss_of(START, END, GOAL, 0.0).item() == pytest.approx((0.0 + 0.5 + 2.0) / 3)
 
 
+def test_a_limit_bounds_what_one_cell_can_add() -> None:
+    limited = loss_of(START, END, GOAL, 0.0, limit=1.0).item()
+    assert limited == pytest.approx((0.0 + 0.5 / 1.5 + 2.0 / 3.0) / 3)
+    far = END.clone()
+    far[2, 1] = 1000.0
+    assert loss_of(START, far, GOAL, 0.0, limit=1.0).item() < (0.0 + 0.5 / 1.5 + 1.0) / 3
+
+
 def test_scores_that_do_not_count_add_nothing() -> None:
     first_two = replace(GOAL, counted=torch.tensor([True, True, False]))
     assert loss_of(START, END, first_two, 0.0).item() == pytest.approx(0.5 / 3)

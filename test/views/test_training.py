@@ -7,7 +7,7 @@ import pytest
 from support.terminal import stderr_on_terminal
 from tilenca.training.progress import Progress
 from tilenca.views import training
-from tilenca.views.training import LINES, show_training
+from tilenca.views.training import LINES, show_measuring, show_training
 
 
 class Clock:
@@ -71,3 +71,18 @@ def test_without_a_terminal_each_seed_tells_at_most_ten_lines(capsys: pytest.Cap
     ]
     assert lines[-1].endswith("  8 of 8 targets met")
     assert "targets" not in lines[0]
+
+
+def test_a_measurement_tells_where_its_rows_will_be_and_how_many_there_are(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with show_measuring("mine/README.md") as tell:
+        for row in range(25):
+            tell(f"row {row}")
+    first, *lines = capsys.readouterr().err.splitlines()
+    assert first.endswith("every row will be in mine/README.md")
+    assert lines == ["10 rows measured", "20 rows measured"]
+    with stderr_on_terminal(monkeypatch, width=140) as screen, show_measuring("mine/README.md") as tell:
+        tell("5x4: 0.998")
+        assert not capsys.readouterr().out
+    assert "mine/README.md" in screen.text

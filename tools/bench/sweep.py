@@ -29,7 +29,7 @@ from tilenca.sweep.table import PARQUET, read_parquet, rows_of, write_parquet
 
 IMAGES = paths.ROOT / "docs" / "images"
 PICTURES = {
-    "curves.svg": "Share of runs with all tiles right against lost messages: a curve for each share of dead tiles",
+    "curves.svg": "Share of runs with all tiles right against lost messages, a curve for each dead share",
     "heat.svg": "The same as a heat map",
     "times.svg": "Median of the steps until all tiles are right and stay so",
 }
@@ -192,8 +192,8 @@ def written_table(folder: Path) -> str:
                 if row["dead"] == dead
             ]
             lines.append(f"| {dead:.0%} | {' | '.join(shown)} |")
-    for name, about in PICTURES.items():
-        lines += ["", f"![{about}](images/sweep-{name})"]
+    for name, caption in PICTURES.items():
+        lines += ["", f"![{caption}](images/sweep-{name})"]
     return "\n".join(lines)
 
 

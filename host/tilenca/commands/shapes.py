@@ -20,10 +20,8 @@ from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
 from tilenca.shapes.image import cropped, drawing_of, pooled, read_image
 from tilenca.shapes.sizes import LARGEST, Size
 from tilenca.shapes.stretch import Rows
-from tilenca.shapes.variant import TRAINED
 from tilenca.views.drawings import half_blocks, side_by_side
 
-TRIES = 50  # for each variant
 IMAGE_ROWS = 10
 INK = (0.5, 0.4, 0.3, 0.2, 0.12)  # least part of a tile that is ink, as far as needed
 MOST_DROPPED = 0.05  # of the drawing's tiles may be left out, before less ink will do
@@ -150,18 +148,7 @@ def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[s
     if drawings.variants is None:
         raise UsageError(f"{path}: says vary = false, so its classes are just its drawings; leave --vary out")
     random = np.random.default_rng(number)
-    found: dict[str, list[tuple[str, ...]]] = {}
-    for label in drawings.labels:
-        some = found.setdefault(label, [])
-        for _ in range(TRIES * count):
-            variant = drawings.variants.draw(label, TRAINED, random)
-            if variant is not None and variant.rows not in some:
-                some.append(variant.rows)
-            if len(some) == count:
-                break
-        if not some:
-            raise UsageError(f"{path}: no variant of '{label}' can be drawn; allow larger sizes in [vary]")
-    return found
+    return {label: drawings.variants.some(label, count, random, path) for label in drawings.labels}
 
 
 def _problems(labels: tuple[str, ...]) -> list[str]:

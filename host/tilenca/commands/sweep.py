@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps",
         type=count,
         metavar="N",
-        help="updates per tile (60; from 43 cells on 100, from 197 on 200)",
+        help="updates per tile (as the test suite: 60, more for large sizes)",
     )
     add(
         "--runs", type=count, metavar="N", help="runs of each drawing in each combination (100; emulator: 10)"

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from tilenca.training.trainer import Trained
 
 SUITE_SEED = 1_000_000  # larger than any usual --seed, so that training never draws the same numbers
+MOST_MISSED = 8  # missed targets to print, the worst ones first
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
@@ -104,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
     metadata = _metadata(args)  # the commit may change while the training runs
     jobs = _train(args, plan)
     try:
-        result = _measured(plan, _best(jobs, args.seed), SUITE_SEED + args.seed, metadata)
+        result = _measured(plan, _best(jobs, args.seed), SUITE_SEED + args.seed, metadata, args.out)
     except KeyboardInterrupt:
         raise _interrupted(args, "while measuring the trained model") from None
 
@@ -114,7 +115,7 @@ def run(args: argparse.Namespace) -> int:
     _draw_history(where, result)
     for path in checkpoints(args.out):
         path.unlink()
-    _report(args, where, result.metrics, time.monotonic() - started)
+    report(args, where, result.metrics, time.monotonic() - started)
     return 0
 
 
@@ -157,7 +158,7 @@ def _metadata(args: argparse.Namespace) -> dict[str, object]:
 
 
 def _measured(
-    plan: TrainingPlan, trained: "Trained", suite_seed: int, metadata: dict[str, object]
+    plan: TrainingPlan, trained: "Trained", suite_seed: int, metadata: dict[str, object], out: Path
 ) -> "Result":
     """The integer model of a training, and its metrics.
 
@@ -167,15 +168,18 @@ def _measured(
         suite_seed: other runs and other random drawings than those that decided when to stop, and which seed
             is best.
         metadata: of the model.
+        out: the model's folder.
     """
     from tilenca.evaluation.evaluator import validate
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.results import Result
     from tilenca.training.trainer import model_of
+    from tilenca.views.training import show_measuring
 
     model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
     suite = make_suite(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), suite_seed)
-    metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, warn)
+    with show_measuring(str(out / "README.md")) as tell:
+        metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, tell)
     metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
     metrics["best_iteration"] = trained.best_iteration
     return Result(model, metrics, trained.history, trained.checks)
@@ -250,18 +254,26 @@ def _commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def _report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seconds: float) -> None:
+def _reached(row: dict[str, Any]) -> float:
+    """The part of its target that a row reached."""
+    return float(row["share"]) / float(row["target"])
+
+
+def report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], seconds: float) -> None:
+    """Prints where the model is, the targets that it missed most, and what to do next."""
     if args.json:
         print(json.dumps({"model": str(where), "seconds": round(seconds, 1), "metrics": metrics}))
         return
-    missed = [row for row in metrics["rows"] if not row["holds"]]
+    missed = sorted((row for row in metrics["rows"] if not row["holds"]), key=_reached)
     print(f"model in {where}, {seconds:.0f} s; {metrics['targets_held']} targets held")
-    for row in missed:
+    for row in missed[:MOST_MISSED]:
         worst, least = row["worst"], f", wanted {row['floor']:.1%}" if row["floor"] else ""
         print(
             f"  missed: {row['name']}, after {row['steps']} steps: {row['share']:.1%} of the runs, "
             f"wanted {row['target']:.1%}; the worst drawing, {worst['shape']}: {worst['share']:.1%}{least}"
         )
+    if len(missed) > MOST_MISSED:
+        print(f"  and {len(missed) - MOST_MISSED} more, all in {where / 'README.md'}")
     if missed and args.recipe == "smoke":
         warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
     shapes = f" --shapes {shlex.join(map(str, args.shapes))}"

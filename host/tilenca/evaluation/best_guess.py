@@ -1,4 +1,4 @@
-"""The best that tiles could do where a dead tile cuts a drawing into pieces that cannot talk to each other.
+"""The best that tiles could do where dead tiles cut a drawing into pieces that cannot talk to each other.
 
 A piece is a drawing of its own, and other drawings may leave the same piece. Whatever its tiles compute, they
 can give only one answer for each piece, so some drawings must go wrong.
@@ -9,7 +9,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 
+import numpy as np
+
 from tilenca.base.sides import OFFSETS
+from tilenca.shapes.cells import beside
 from tilenca.shapes.edits import Cell, rows_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows
@@ -119,3 +122,44 @@ def _choices(cuts: Sequence[Cut], group: Mapping[Rows, list[str]]) -> Iterator[t
         for piece, labels in group.items():
             answers[piece] = max(labels, key=lambda label: _right(cuts, answers | {piece: label}))
         yield tuple(answers.values())
+
+
+def guessed_share(shapes: Sequence[Shape], dead: float, tries: int, random: np.random.Generator) -> float:
+    """The share of runs with dead tiles in which all pieces name their drawing by guessing the likeliest.
+
+    A piece knows itself and that its neighbours are dead or absent, and nothing about other pieces.
+
+    Args:
+        shapes: the drawings, each as likely as any other.
+        dead: the share of dead tiles, 0..1; each is dead by itself, and at least one lives.
+        tries: runs to draw.
+        random: the only source of chance.
+    """
+    guesses: dict[Rows, str] = {}
+    right = 0
+    for _ in range(tries):
+        shape = shapes[int(random.integers(len(shapes)))]
+        draws = random.random(len(shape.cells))
+        alive = (draws >= dead) | (draws == draws.max())
+        living = {cell for cell, lives in zip(shape.cells, alive, strict=True) if lives}
+        found = [rows_of(piece) for piece in pieces(living)]
+        for piece in found:
+            if piece not in guesses:
+                guesses[piece] = _likeliest(shapes, piece, dead)
+        right += all(guesses[piece] == shape.label for piece in found)
+    return right / tries
+
+
+def _likeliest(shapes: Sequence[Shape], piece: Rows, dead: float) -> str:
+    """The label of the drawings that most likely leave a piece: by how many tiles around it must be dead."""
+    cells = Shape("", piece, "").cells
+    around = beside(cells)
+    chances: dict[str, float] = {}
+    for shape in shapes:
+        tiles = set(shape.cells)
+        for down in range(len(shape.rows) - len(piece) + 1):
+            for right in range(len(shape.rows[0]) - len(piece[0]) + 1):
+                if all((row + down, col + right) in tiles for row, col in cells):
+                    gone = sum((row + down, col + right) in tiles for row, col in around)
+                    chances[shape.label] = chances.get(shape.label, 0.0) + dead**gone
+    return max(chances, key=lambda label: chances[label])

@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.evaluation.best_guess import best_share
-from tilenca.evaluation.metrics import Measurement, Runs, Target, measure, target_of
-from tilenca.evaluation.suites import Case, Suite
+from tilenca.evaluation.best_guess import best_share, guessed_share
+from tilenca.evaluation.cases import VERY_LARGE_STEPS, Case
+from tilenca.evaluation.metrics import TARGETS, Measurement, Runs, Target, measure, target_of
+from tilenca.evaluation.suites import Suite
+from tilenca.shapes.file import UNKNOWN
 from tilenca.simulator.conditions import Conditions, Fault, FaultKind, ScheduleKind
 from tilenca.simulator.engine import Engine
 from tilenca.simulator.simulator import Simulator, Trajectory
@@ -26,6 +28,8 @@ SCHEDULES: dict[ScheduleKind, str] = {
     "random": "two random halves a step",
     "clock": "the tiles' own clocks",
 }
+GUESSES = 2000  # runs from which the share of the best guess follows
+BELOW_BEST = 0.03  # how far tiles may be below it
 CLOCK = Conditions("clock")
 AT_ONCE = Way("at once")
 ORDERS: tuple[Order, ...] = ("adding first", "mixed", "removing first")
@@ -57,7 +61,7 @@ class Evaluator:
     def short_rows(self) -> Iterator[Measurement]:
         """The measurements during training: the clocks only, and nothing that takes long."""
         yield from self.agreement({"clock": SCHEDULES["clock"]})
-        for part in (self.varied, self.sizes, self.disturbed, self.unknown):
+        for part in (self.varied, self.sizes, self.disturbed, self.unknown, self.agreeing):
             yield from part()
         yield from self.changes(one_by_one=False)
         yield from self.longevity()
@@ -69,6 +73,7 @@ class Evaluator:
         yield from self.sizes()
         yield from self.disturbed()
         yield from self.unknown()
+        yield from self.agreeing()
         yield from self.changes()
         yield from self.longevity()
 
@@ -95,7 +100,8 @@ class Evaluator:
     def sizes(self) -> Iterator[Measurement]:
         """Other sizes."""
         for case in self.suite.sizes:
-            each = self.runs if case.held_out else max(2, self.runs // 25)
+            many = case.held_out and case.steps <= VERY_LARGE_STEPS
+            each = self.runs if many else max(2, self.runs // 25)
             runs = self._run(case, CLOCK, case.steps, each=each)
             yield measure("sizes", case.name, runs, case.steps, _target_if_aimed(case))
 
@@ -112,6 +118,7 @@ class Evaluator:
             each = max(2, 10 * self.runs // len(case.drawings))
             runs = self._run(case, CLOCK, case.steps, each=each)
             yield measure("damaged", case.name, runs, case.steps, _target_if_aimed(case))
+        yield from self.dead()
         large = [n for n, size in enumerate(drawn.drawings.sizes) if size > 1]
         if large:  # without a single tile no tile is left to measure
             yield from self._faults(replace(drawn, drawings=drawn.drawings.chosen(large)))
@@ -128,6 +135,32 @@ class Evaluator:
                 "faults", name, runs, mark, None if target is None else target_of(target), changed_at
             )
             yield replace(row, best=round(best_share(case.drawings.shapes), 5)) if name == DEAD else row
+
+    def dead(self) -> Iterator[Measurement]:
+        """Many dead tiles: thick strokes hold together, and pieces of thin ones can only guess."""
+        for case in self.suite.dead:
+            runs = self._run(case, Conditions("clock", dead=case.dead), case.steps)
+            if case.kind in TARGETS:
+                yield measure("dead", case.name, runs, case.steps, _target_if_aimed(case))
+                continue
+            best = round(guessed_share(case.drawings.shapes, case.dead, GUESSES, self.random), 5)
+            target = Target(round(best - BELOW_BEST, 5)) if case.aimed else None
+            row = measure("dead", case.name, runs, case.steps, target)
+            yield replace(row, best=best)
+
+    def agreeing(self) -> Iterator[Measurement]:
+        """Any drawing: a run is right if all tiles show one answer, or for a class that one or the dash."""
+        labels = self.suite.drawn[0].drawings.labels
+        for case in self.suite.agreeing:
+            runs = self._run(case, CLOCK, case.steps, each=max(2, 10 * self.runs // len(case.drawings)))
+            given, own = runs.answers[case.steps], case.drawings.classes[runs.chosen]
+            right = given >= 0
+            if case.kind == "one tile too many":
+                right &= (given == own) | (given == (labels.index(UNKNOWN) if UNKNOWN in labels else own))
+            told = {1: np.where(right, own, given)}
+            asked = replace(runs, trajectory=Trajectory(right.astype(np.float32)[None]), answers=told)
+            row = measure("one answer", case.name, asked, 1, _target_if_aimed(case))
+            yield replace(row, steps=case.steps, convergence=None)
 
     def unknown(self) -> Iterator[Measurement]:
         """Drawings of no class: a run is right if every tile shows the dash."""

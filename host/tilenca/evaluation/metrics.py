@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tilenca.evaluation.suites import Case
+from tilenca.evaluation.cases import Case
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import UNKNOWN
 from tilenca.simulator.simulator import Trajectory
@@ -33,11 +33,16 @@ TARGETS = {
     "varied": Target(0.92),
     "trained": Target(0.998, 0.9),
     "held out": Target(0.99),
-    "very large": Target(0.95),
+    "very large": Target(0.99),
+    "huge": Target(0.97),
     "lost": Target(0.99),
     "damaged": Target(0.97),
     "damaged, large": Target(0.95),
     "away": Target(PERFECT),
+    "5 % dead, two tiles thick": Target(0.95),
+    "15 % dead, two tiles thick": Target(0.90),
+    "one answer": Target(0.99),
+    "one tile too many": Target(0.99),
     "random drawings": Target(0.98),
     "halves of drawings": Target(0.90),
     "other choices of the same strokes": Target(0.90),
@@ -224,6 +229,6 @@ def answer_shares(
     unknown = drawings.labels.index(UNKNOWN) if UNKNOWN in drawings.labels else None
     missed = answers != drawings.classes[chosen]
     dash = missed & (answers == unknown) if unknown is not None else np.zeros_like(missed)
-    split = answers < 0
+    split = missed & (answers < 0)
     shares = (round(float(kind.mean()), 5) for kind in (dash, missed & ~dash & ~split, split))
     return next(shares), next(shares), next(shares)

@@ -12,6 +12,8 @@ from itertools import chain
 import numpy as np
 
 from tilenca.base.errors import UsageError
+from tilenca.evaluation.bodies import agreeing_cases, dead_cases
+from tilenca.evaluation.cases import LARGE_STEPS, MOST_STEPS, SHORT_STEPS, VERY_LARGE_STEPS, Case, steps_for
 from tilenca.model.file import Model
 from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
@@ -21,37 +23,13 @@ from tilenca.shapes.likeness import index_of
 from tilenca.shapes.sizes import Size, Sizes, size_name
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
-LARGE = 42  # a drawing with a larger bounding box gets more steps to agree
-VERY_LARGE = 196  # and beyond this even more
 VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
 FEWEST = 10  # drawings of no class of which a target is asked
 INDEXED = 600  # variants that drawings of no class are compared with
 VARIANT_TRIES = 300  # in a row without a new one
-SHORT_STEPS, LARGE_STEPS, VERY_LARGE_STEPS = 60, 100, 200
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
 DAMAGED_SIZES: tuple[Size, ...] = ((6, 4), (7, 7), (8, 6), (12, 10))
 DAMAGED_LARGE = 100  # such a drawing has another target from this area on
-
-
-@dataclass(frozen=True)
-class Case:
-    """One set of drawings to measure.
-
-    Attributes:
-        kind: decides the target, see `tilenca.evaluation.metrics.TARGETS`.
-        name: as tables call it.
-        drawings: with the model's labels.
-        steps: the number of steps after which all tiles must agree.
-        held_out: whether training never saw these drawings.
-        aimed: whether the model was trained for such drawings, so that there is a target to reach.
-    """
-
-    kind: str
-    name: str
-    drawings: Drawings
-    steps: int
-    held_out: bool = False
-    aimed: bool = True
 
 
 @dataclass(frozen=True)
@@ -67,6 +45,8 @@ class Suite:
         unknown: drawings of no class; empty where the model has no class for them.
         larger: the first file's drawings at a larger trained size, and at the largest.
         varied: variants of held-out forms; None: the classes are just their drawings.
+        dead: the drawings at a larger size, with shares of dead tiles.
+        agreeing: any connected drawings, whose tiles must agree on one answer.
     """
 
     drawn: tuple[Case, ...]
@@ -75,6 +55,8 @@ class Suite:
     unknown: tuple[Case, ...]
     larger: tuple[Case, ...]
     varied: Case | None = None
+    dead: tuple[Case, ...] = ()
+    agreeing: tuple[Case, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -138,6 +120,8 @@ def make_suite(
         tuple(unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
         varied_case(task, aims, seed, split),
+        tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
+        tuple(agreeing_cases(task, first, aimed, seed)),
     )
 
 
@@ -162,19 +146,14 @@ def varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | Non
     return Case("varied", name, drawings, LARGE_STEPS, held_out=True, aimed=aims.varied)
 
 
-def steps_at(size: Size) -> int:
-    """The number of steps after which a drawing of this size is asked for its answer."""
-    area = size[0] * size[1]
-    return SHORT_STEPS if area <= LARGE else LARGE_STEPS if area <= VERY_LARGE else VERY_LARGE_STEPS
-
-
 def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Sizes) -> Iterable[Case]:
     trained = _distinct(shape for size in aimed.trained for shape in at_size(first, size))
     trained = [shape for shape in trained if shape.rows not in [drawn.rows for drawn in first]]
     if trained:
-        yield Case("trained", "all sizes trained on", task.of(trained), max(map(steps_at, aimed.trained)))
+        yield Case("trained", "all sizes trained on", task.of(trained), max(map(steps_for, aimed.trained)))
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
+    reach = 2 if aimed.more else 1.5
     for path in sizes.drawn:
         drawings = load_drawings([path], labels=task.labels)
         yield Case("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
@@ -182,15 +161,16 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     seen = {shape.rows for shape in trainable}
     for size in new:
         if shapes := [shape for shape in _distinct(at_size(first, size)) if shape.rows not in seen]:
-            # The aim is sizes up to half as large again as the trained ones, not more.
-            steps = steps_at(size)
+            # The aim is sizes up to half as large again as the trained ones, or twice where these are large.
+            steps = steps_for(size)
+            kinds = {LARGE_STEPS: "held out", VERY_LARGE_STEPS: "very large", MOST_STEPS: "huge"}
             yield Case(
-                "held out" if steps <= LARGE_STEPS else "very large",
+                next(kind for most, kind in kinds.items() if steps <= most),
                 f"{size_name(size)}, never trained on",
                 task.of(shapes),
                 steps,
                 held_out=True,
-                aimed=size[0] <= 1.5 * most[0] and size[1] <= 1.5 * most[1],
+                aimed=size[0] <= reach * most[0] and size[1] <= reach * most[1],
             )
 
 
@@ -204,8 +184,8 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
     """A larger size, and the largest."""
     wanted = _larger_sizes(task, sizes)
     for size in dict.fromkeys((wanted[0], wanted[-1]) if wanted else ()):
-        kind = "drawn" if steps_at(size) <= SHORT_STEPS else "trained"
-        yield Case(kind, size_name(size), task.of(at_size(first, size)), steps_at(size))
+        kind = "drawn" if steps_for(size) <= SHORT_STEPS else "trained"
+        yield Case(kind, size_name(size), task.of(at_size(first, size)), steps_for(size))
 
 
 def _damaged_cases(
@@ -214,7 +194,7 @@ def _damaged_cases(
     """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
     for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
         shapes = first if size is None else at_size(first, size)
-        steps = SHORT_STEPS if size is None else steps_at(size)
+        steps = SHORT_STEPS if size is None else steps_for(size)
         known = known_of([*task.shapes, *shapes])
         height, width = size or task.largest
         kind = "damaged" if height * width < DAMAGED_LARGE else "damaged, large"

@@ -25,6 +25,12 @@ def connected(cells: Iterable[tuple[int, int]]) -> bool:
     return not left
 
 
+def beside(cells: Iterable[tuple[int, int]]) -> set[tuple[int, int]]:
+    """The empty places that have a cell beside them."""
+    tiles = set(cells)
+    return {(row + dr, col + dc) for row, col in tiles for dr, dc in OFFSETS} - tiles
+
+
 def removable(cells: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     """Those of connected cells that leave the others connected, in their order.
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from tilenca.base.errors import UsageError
 from tilenca.base.shipped import shapes_names
 from tilenca.base.sides import OFFSETS
+from tilenca.base.suggest import did_you_mean
 from tilenca.shapes.cells import TILE, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
 from tilenca.shapes.orient import (
@@ -31,6 +32,7 @@ from tilenca.shapes.stretch import stretch
 from tilenca.shapes.vary import Vary, read_forms, read_vary
 
 EMPTY = ".", " "
+KEYS = ("shape", "sizes", "vary", "forms", "orientations")
 UNKNOWN = "-"  # the label of drawings of no class
 
 _HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
@@ -133,8 +135,9 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     forms = document.pop("forms", {})
     kind = read_orientations(path, document.pop("orientations", None))
     if document:
+        key = next(iter(document))
         raise UsageError(
-            f"{path}: unknown key '{next(iter(document))}'; a shape file has [[shape]] tables, "
+            f"{path}: unknown key '{key}'{did_you_mean(key, KEYS)}; a shape file has [[shape]] tables, "
             "[sizes], [vary], [forms] and orientations"
         )
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):

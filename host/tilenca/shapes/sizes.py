@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
+from tilenca.base.suggest import did_you_mean
 
 Size = tuple[int, int]  # rows, columns
 
@@ -78,7 +79,8 @@ def read_sizes(path: Path, table: object) -> Sizes:
         raise UsageError(f"{path}: sizes must be a table; write [sizes] on a line of its own")
     unknown = [key for key in table if key not in KEYS]
     if unknown:
-        raise UsageError(f"{path}: [sizes] has no '{unknown[0]}'; it has {', '.join(KEYS)}")
+        meant = did_you_mean(unknown[0], KEYS)
+        raise UsageError(f"{path}: [sizes] has no '{unknown[0]}'{meant}; it has {', '.join(KEYS)}")
     if ("from" in table) != ("to" in table):
         raise UsageError(f"{path}: [sizes] has one of from and to; give both or neither")
     held_out = tuple(read_size(path, "sizes", "held_out", text) for text in _texts(path, table, "held_out"))

@@ -6,9 +6,11 @@
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from tilenca.base.errors import UsageError
 from tilenca.shapes.form import Form, make_form
 from tilenca.shapes.sizes import Size
 from tilenca.shapes.skeleton import Skeleton
@@ -19,6 +21,7 @@ THINNER = 0.45  # how much rarer each further tile of thickness is
 UNEVEN = 0.3  # the share of pens that are thicker one way than the other
 SLIMMEST, WIDEST = 0.35, 1.1  # width by height
 TRIES = 12  # sizes and pens of one form
+MOST_DRAWS = 300  # for each variant that is wanted
 HELD_OUT = 4  # one form of so many is held out of training, and one drawing of so many
 TRAINED, CHOOSING, LAST = "trained", "choosing", "last"
 
@@ -86,6 +89,29 @@ class Variants:
             if rows is not None and (len(rows), len(rows[0])) not in self._avoid:
                 return Variant(label, rows, split, max(pen)) if split_of(rows) == split else None
         return None
+
+    def some(self, label: str, count: int, random: np.random.Generator, path: Path) -> list[Rows]:
+        """Different variants of a class, as training draws them; fewer where hardly a new one turns up.
+
+        Args:
+            label: the class.
+            count: how many.
+            random: the only source of chance.
+            path: the file of the class.
+
+        Raises:
+            UsageError: none can be drawn; the message names the file, the class and the remedy.
+        """
+        found: dict[Rows, None] = {}
+        for _ in range(MOST_DRAWS * count):
+            variant = self.draw(label, TRAINED, random)
+            if variant is not None:
+                found.setdefault(variant.rows)
+            if len(found) == count:
+                break
+        if not found:
+            raise UsageError(f"{path}: no variant of '{label}' can be drawn; allow larger sizes in [vary]")
+        return list(found)
 
     def _pen(self, random: np.random.Generator) -> tuple[int, int]:
         least, most = self.vary.thickness

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import UsageError
+from tilenca.base.suggest import did_you_mean
 from tilenca.shapes.sizes import Size, Sizes, read_size, size_name
 from tilenca.shapes.skeleton import Skeleton, of_strokes
 
@@ -107,7 +108,8 @@ def read_vary(path: Path, table: object) -> Vary | None:
     changes: dict[str, Any] = {}
     for key, value in table.items():
         if key not in KEYS:
-            raise UsageError(f"{path}: [vary] has no '{key}'; it has {', '.join(KEYS)}")
+            meant = did_you_mean(key, KEYS)
+            raise UsageError(f"{path}: [vary] has no '{key}'{meant}; it has {', '.join(KEYS)}")
         if key in ("from", "to"):
             changes["least" if key == "from" else "most"] = read_size(path, "vary", key, value)
         else:

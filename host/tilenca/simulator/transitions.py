@@ -18,7 +18,7 @@ from tilenca.shapes.edits import Cell, rows_of
 from tilenca.shapes.file import Shape
 from tilenca.shapes.stretch import Rows
 from tilenca.simulator.conditions import Conditions, Rebuilding
-from tilenca.simulator.engine import Engine, States
+from tilenca.simulator.engine import Engine
 from tilenca.simulator.simulator import Simulator, Trajectory
 
 MOST_CHANGES = 2000  # runs of one row; the pairs of thousands of drawings are millions
@@ -83,6 +83,33 @@ def rebuild(
     pairs = _pairs(drawings, runs, random)
     if not pairs:
         return None
+    simulator, _ = rebuilt(engine, drawings, pairs, before, random, way)
+    trajectory = simulator.run(after)
+    return Changed(trajectory, np.array([new for _, new in pairs]), simulator.answers())
+
+
+def rebuilt(
+    engine: Engine,
+    drawings: Drawings,
+    pairs: Sequence[tuple[int, int]],
+    before: int,
+    random: np.random.Generator,
+    way: Way = Way(),
+) -> tuple[Simulator, NDArray[np.bool_]]:
+    """Runs in which one drawing is rebuilt into another; the last change comes in the next step.
+
+    Args:
+        engine: the model.
+        drawings: of both.
+        pairs: the numbers of the old and the new drawing of each run.
+        before: steps of the old drawing.
+        random: the only source of chance.
+        way: how.
+
+    Returns:
+        The runs, which have a cell for every tile of both drawings, and (N,) whether a cell is one of the new
+        drawing, in its own order.
+    """
     sites = [_Site.plan(drawings, old, new, way.order, random) for old, new in pairs]
     number_of: dict[tuple[Rows, str], int] = {}
     for site in sites:
@@ -93,8 +120,7 @@ def rebuild(
     rebuilding = _timetable(sites, last, way.between)
     simulator = Simulator(engine, grids, chosen, Conditions("clock"), random, rebuilding=rebuilding)
     simulator.run(last)
-    trajectory = simulator.run(after)
-    return Changed(trajectory, np.array([new for _, new in pairs]), simulator.answers())
+    return simulator, np.array([cell in site.new for site in sites for cell in site.cells])
 
 
 @dataclass(frozen=True)
@@ -104,12 +130,14 @@ class _Site:
     Attributes:
         cells: all cells, in reading order.
         old: those of the old drawing.
+        new: those of the new one.
         steps: the changes.
         label: of the new drawing.
     """
 
     cells: tuple[Cell, ...]
     old: frozenset[Cell]
+    new: frozenset[Cell]
     steps: list[Step]
     label: str
 
@@ -127,7 +155,7 @@ class _Site:
             [_all_changes(tiles, wanted)] if order == "at once" else list(walk(tiles, wanted, order, random))
         )
         cells = tuple(sorted(tiles | wanted))
-        return _Site(cells, frozenset(tiles), steps, drawings.shapes[new].label)
+        return _Site(cells, frozenset(tiles), frozenset(wanted), steps, drawings.shapes[new].label)
 
 
 def _timetable(sites: Sequence[_Site], last: int, between: int) -> Rebuilding:
@@ -151,17 +179,6 @@ def _pairs(drawings: Drawings, runs: int, random: np.random.Generator) -> list[t
         return pairs if some is None else [pairs[number] for number in some]
     drawn = random.integers(len(drawings), size=(2 * MOST_CHANGES, 2))
     return [(int(old), int(new)) for old, new in drawn if classes[old] != classes[new]][:MOST_CHANGES]
-
-
-def moved(engine: Engine, before: Simulator, stays: Sequence[NDArray[np.int64]]) -> States:
-    """States of the tiles of every run's new drawing, from where `stays` says, or the seed's (-1)."""
-    parts = []
-    for start, places in zip(before.batch.starts, stays, strict=True):
-        states = engine.seed(len(places))
-        kept = places >= 0
-        states[kept] = before.states[start + places[kept]]
-        parts.append(states)
-    return np.concatenate(parts)
 
 
 def _all_changes(old: set[Cell], new: set[Cell]) -> Step:

@@ -9,7 +9,7 @@ from typing import Any
 from tilenca.base.errors import UsageError
 from tilenca.base.shipped import model_folder
 from tilenca.cluster.fingerprint import fingerprint
-from tilenca.evaluation.suites import SHORT_STEPS, steps_at
+from tilenca.evaluation.cases import SHORT_STEPS, steps_for
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.sizes import parse_size
 from tilenca.sweep.axes import AS_DRAWN, Axis, Point, points, text_of
@@ -93,7 +93,7 @@ def make_plan(wish: Wish) -> Plan:
 
 def _cell(wish: Wish, point: Point, model_id: str, subjects: Subjects) -> list[Row]:
     size = str(point["size"])
-    steps = wish.steps or (SHORT_STEPS if size == AS_DRAWN else steps_at(parse_size(size)))
+    steps = wish.steps or (SHORT_STEPS if size == AS_DRAWN else steps_for(parse_size(size)))
     return [
         Row(point, wish.engine, model_id, steps, subject, wish.runs * len(subject.shapes))
         for subject in subjects.at(str(point["drawings"]), size)

@@ -43,7 +43,7 @@ class Curriculum:
 
     @property
     def whole(self) -> NDArray[np.bool_]:
-        """(S,) drawings of a class without damage; training begins with them."""
+        """(S,) drawings of a class without damage."""
         whole: NDArray[np.bool_] = np.isin(self.kinds, WHOLE)
         return whole
 

@@ -104,9 +104,9 @@ class Generator:
     def _base(self, random: np.random.Generator) -> Shape | None:
         """Any whole drawing: a variant, one of the files, or a stretched one."""
         chance = random.random()
-        if chance < 0.4 and self._variants is not None:
+        if chance < 0.3 and self._variants is not None:
             return self._varied(random)
-        among = self._drawn if chance < 0.7 else self._whole
+        among = self._drawn if chance < 0.65 else self._whole
         return among[int(random.integers(len(among)))]
 
     def _damaged(self, random: np.random.Generator) -> Shape | None:

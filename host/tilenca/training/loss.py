@@ -66,7 +66,7 @@ def agreed_targets(scores: Tensor, target: Tensor, starts: NDArray[np.int64]) ->
     return torch.where(target == NO_CLASS, torch.from_numpy(favoured).to(target.device), target)
 
 
-def loss_of(start: Tensor, end: Tensor, goal: Goal, stability_penalty: float) -> Tensor:
+def loss_of(start: Tensor, end: Tensor, goal: Goal, stability_penalty: float, limit: float = 0.0) -> Tensor:
     """The loss of a batch of rollouts.
 
     Args:
@@ -74,13 +74,18 @@ def loss_of(start: Tensor, end: Tensor, goal: Goal, stability_penalty: float) ->
         end: (N, C) float32, states after them.
         goal: what they should be.
         stability_penalty: weight of the second term; 0: there is none.
+        limit: of what one cell adds, which it approaches as it gets worse: cells that nothing can mend do not
+            pull at those that are right (Geman and McClure, 1987); 0: none.
 
     Returns:
         () float32, the mean over the cells.
     """
     scores = scores_of(end, goal.classes)
     wanted = torch.nn.functional.one_hot(goal.target, goal.classes).to(scores.dtype)
-    loss = ((scores - wanted).square().sum(dim=1) * goal.counted).mean()
+    error = (scores - wanted).square().sum(dim=1)
+    if limit > 0:
+        error = error / (1 + error / limit)
+    loss = (error * goal.counted).mean()
     if stability_penalty > 0:
         stable = goal.converged & (scores.argmax(dim=1) == goal.target)
         loss = loss + stability_penalty * ((end - start).square().sum(dim=1) * stable).mean()

@@ -23,6 +23,7 @@ Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
 UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
 SAME_SCALE = 2, 3  # rows and columns by which drawings may differ that are rebuilt into each other
+LASTING = 0.5  # the share of rebuilt grids whose new drawing is of the files, or a stretched one
 PATIENCE = 1000  # ticks for which a grid that does not agree is left alone
 CONVERGED_AFTER = 40  # ticks without a disturbance after which a wrong tile counts as a failure
 
@@ -88,6 +89,7 @@ class Pools:
         self.failures = np.ones(curriculum.records)
         self._whole = np.flatnonzero(curriculum.whole)
         self._drawn = np.flatnonzero(curriculum.kinds == DRAWN)
+        self._lasting = ~curriculum.renewable
         self._weigh(0.0)
         self.perturbed = self._empty(recipe.perturbed_pool)
         self.undisturbed = self._empty(recipe.undisturbed_pool)
@@ -101,7 +103,7 @@ class Pools:
 
     def renew(self) -> None:
         """Replaces some of the drawings that no grid has by new ones."""
-        renewable = np.flatnonzero(self.curriculum.renewable)
+        renewable = np.flatnonzero(~self._lasting)
         idle = np.setdiff1d(renewable, np.concatenate((self.perturbed.drawing, self.undisturbed.drawing)))
         some = self.random.permutation(idle)[: round(self.recipe.renewed * len(renewable))]
         self.curriculum = self.curriculum.renewed(some, self.random)
@@ -110,7 +112,7 @@ class Pools:
         """Draws a batch, and disturbs some of it.
 
         Args:
-            progress: 0..1 over the training; it decides the share of damaged and unknown drawings.
+            progress: 0..1 over the training; it decides the share of drawings that are renewed.
         """
         recipe, random = self.recipe, self.random
         self._weigh(progress)
@@ -147,11 +149,8 @@ class Pools:
         resets = round(recipe.reset * count)
         switched = resets + round(recipe.switch * count)
         disturbed = switched + round(recipe.state_shuffle * count)
-        for numbers, disturb in (
-            (taken[:resets], self.reset),
-            (taken[resets:switched], self.switch),
-            (taken[switched:disturbed], self.shuffle_states),
-        ):
+        *parts, _ = np.split(taken, (resets, switched, disturbed))
+        for numbers, disturb in zip(parts, (self.reset, self.switch, self.shuffle_states), strict=True):
             for number in numbers:
                 disturb(self.perturbed, int(number))
         return taken, resets, disturbed
@@ -196,10 +195,8 @@ class Pools:
             name: {field.name: torch.from_numpy(getattr(pool, field.name)) for field in fields(pool)}
             for name, pool in (("perturbed", self.perturbed), ("undisturbed", self.undisturbed))
         }
-        renewed = [
-            (s.label, s.rows, s.name)
-            for s in np.array(self.drawings.shapes, object)[self.curriculum.renewable]
-        ]
+        renewable = np.array(self.drawings.shapes, object)[~self._lasting]
+        renewed = [(shape.label, shape.rows, shape.name) for shape in renewable]
         return state | {"failures": torch.from_numpy(self.failures), "renewed": renewed}
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -208,8 +205,8 @@ class Pools:
             for field in fields(Pool):
                 setattr(getattr(self, name), field.name, state[name][field.name].cpu().numpy().copy())
         self.failures = state["failures"].cpu().numpy().copy()
-        places, shapes = np.flatnonzero(self.curriculum.renewable), [Shape(*s) for s in state["renewed"]]
-        self.curriculum = self.curriculum.with_drawings(places, shapes)
+        shapes = [Shape(*values) for values in state["renewed"]]
+        self.curriculum = self.curriculum.with_drawings(np.flatnonzero(~self._lasting), shapes)
 
     def _empty(self, count: int) -> Pool:
         states = np.zeros((count, self.curriculum.most_tiles, self.channels), np.float32)
@@ -225,7 +222,7 @@ class Pools:
         """Sets each drawing's chance: a mixture of its weight and its weight times its share of failures."""
         least, (begin, end) = 0.05, self.recipe.ramp
         grown = np.clip((progress - begin) / max(end - begin, 1e-9), least, 1)
-        weights = self.curriculum.weights * np.where(self.curriculum.whole, 1, grown)
+        weights = self.curriculum.weights * np.where(self._lasting, 1, grown)
         failing = weights * (self.failures[self.curriculum.failing] + 1e-3)
         share = self.recipe.failure_weighting
         self._chances = (1 - share) * weights / weights.sum() + share * failing / failing.sum()
@@ -239,10 +236,12 @@ class Pools:
         return np.array([self._pick(self._drawn if drawn else self._whole) for _ in range(count)], np.int64)
 
     def pick_other(self, drawing: int) -> int:
-        """Another drawing of about its size; the same where there is none."""
+        """Another drawing of about its size, often one that stays; the same where there is none."""
         extents = self.drawings.extents
         near = (np.abs(extents - extents[drawing]) <= SAME_SCALE).all(axis=1)
         near[drawing] = False
+        if self.random.random() < LASTING and (near & self._lasting).any():
+            near &= self._lasting
         return self._pick(np.flatnonzero(near)) if near.any() else drawing
 
     def any_states(self, count: int) -> States:
@@ -288,7 +287,8 @@ class Pools:
         old = int(pool.drawing[number])
         new = self.pick_other(old)
         if new == old:
-            return self.reset(pool, number)
+            self.reset(pool, number)
+            return
         stays = self.drawings.overlap(old, new, self.random)
         before = pool.states[number].copy()
         pool.drawing[number] = new
@@ -297,4 +297,3 @@ class Pools:
         kept = np.flatnonzero(stays >= 0)
         pool.states[number, kept] = before[stays[kept]]
         pool.age[number] = 0
-        return None

@@ -20,12 +20,14 @@ from tilenca.shapes.batch import Drawings
 from tilenca.simulator.conditions import Conditions, Fault
 from tilenca.simulator.engine import SEED_STATE, FastEngine
 from tilenca.simulator.simulator import Simulator
-from tilenca.simulator.transitions import moved
+from tilenca.simulator.transitions import Order, Way, rebuilt
 from tilenca.training.pool import Pool, Pools, States
 
 TICKS_PER_STEP = 3  # of training, about as many as one period of a tile there
 CLOCKS = Conditions("clock", boot=0.0)
 BEGINNINGS = (Conditions("random"), Conditions("clock"), Conditions("clock", loss=0.5))
+ORDERS: tuple[Order, ...] = ("adding first", "mixed", "removing first")
+SLOWLY = 15  # steps from one tile to the next
 BEFORE, AGREED_BY = 50, 60  # steps before a disturbance, and steps after it in which the tiles must agree
 REFRESHED = 128  # grids of the undisturbed pool at once
 MOST_HARD_EXAMPLES = 1 / 8  # of the perturbed pool
@@ -73,40 +75,54 @@ def mine_hard_examples(model: Model, pools: Pools, runs: int, random: np.random.
         How many did not agree.
     """
     hard = []
-    for trial in _trials(FastEngine(model), pools, runs, random):
+    for trial, chosen, its_own in _trials(FastEngine(model), pools, runs, random):
         wrong = ~trial.run(AGREED_BY).agreed[-1]
         for run in np.flatnonzero(wrong):
-            cells = trial.batch.sample == run
-            hard.append((trial.chosen[run], trial.states[cells] / np.float32(SEED_STATE)))
+            cells = (trial.batch.sample == run) & its_own
+            hard.append((chosen[run], trial.states[cells] / np.float32(SEED_STATE)))
     most = round(len(pools.perturbed.age) * MOST_HARD_EXAMPLES)
     for number in random.permutation(len(hard))[:most]:
         pools.put(*hard[number])
     return len(hard)
 
 
-def _trials(engine: FastEngine, pools: Pools, runs: int, random: np.random.Generator) -> Iterator[Simulator]:
-    """Trials: whole drawings that start, are rebuilt, get a tile back, or have the states of other tiles."""
+Trial = tuple[Simulator, NDArray[np.int64], NDArray[np.bool_]]
+
+
+def _trials(engine: FastEngine, pools: Pools, count: int, random: np.random.Generator) -> Iterator[Trial]:
+    """Trials: whole drawings that start, are rebuilt, get a tile back, or have the states of other tiles.
+
+    Yields:
+        R runs, (R,) their drawings, and (N,) which cells belong to these.
+    """
     drawings = pools.drawings
 
     def some() -> NDArray[np.int64]:
-        return np.concatenate((pools.pick_whole(runs, drawn=True), pools.pick_whole(runs)))
+        return np.concatenate((pools.pick_whole(count, drawn=True), pools.pick_whole(count)))
 
     for conditions in BEGINNINGS:
-        yield Simulator(engine, drawings, some(), conditions, random)
+        yield _whole(Simulator(engine, drawings, some(), conditions, random))
 
-    new = some()
-    old = np.array([pools.pick_other(drawing) for drawing in new])
-    built = Simulator(engine, drawings, old, Conditions("clock"), random)
-    built.run(BEFORE)
-    stays = [drawings.overlap(int(a), int(b), random) for a, b in zip(old, new, strict=True)]
-    yield Simulator(engine, drawings, new, CLOCKS, random, moved(engine, built, stays))
+    # Rebuilt at once, and tile by tile: the small ones slowly, so that each drawing on the way lasts.
+    for new, between in ((pools.pick_whole(count, drawn=True), SLOWLY), (pools.pick_whole(count), 1)):
+        pairs = [(pools.pick_other(drawing), int(drawing)) for drawing in new]
+        slowly = Way(ORDERS[int(random.integers(len(ORDERS)))], between)
+        for mine, way in ((slice(0, None, 2), Way()), (slice(1, None, 2), slowly)):
+            if pairs[mine]:
+                built, its_own = rebuilt(engine, drawings, pairs[mine], BEFORE, random, way)
+                yield built, new[mine], its_own
 
     chosen = some()
     away = Fault("away", random.integers(drawings.sizes[chosen]), BEFORE // 2, BEFORE)
     back = Simulator(engine, drawings, chosen, Conditions("clock", fault=away), random)
     back.run(BEFORE)
-    yield back
+    yield _whole(back)
 
     chosen = some()
     states = as_integers(pools.any_states(int(drawings.sizes[chosen].sum())))
-    yield Simulator(engine, drawings, chosen, CLOCKS, random, states)
+    yield _whole(Simulator(engine, drawings, chosen, CLOCKS, random, states))
+
+
+def _whole(runs: Simulator) -> Trial:
+    """Runs that consist of their drawings' cells."""
+    return runs, runs.chosen, np.ones(runs.cells, np.bool_)

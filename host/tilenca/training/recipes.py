@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from tilenca.base.errors import UsageError
+from tilenca.base.suggest import did_you_mean
 from tilenca.evaluation.suites import Aims
 from tilenca.model.file import DEFAULT_HIDDEN
 
@@ -45,6 +46,7 @@ class Recipe:
         trials: drawings of the files to try with each kind of beginning, to mine hard examples: those that do
             not agree go into the perturbed pool.
         stability_penalty: weight of the squared change of converged states over one iteration.
+        loss_limit: the most that one cell can add to the loss, in units of the squared error; 0: any.
         fire_rate: least and most share of tiles that update in a tick, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
         ticks_per_period: least and most ticks that one period of such a clock takes.
@@ -64,7 +66,8 @@ class Recipe:
         stretched: share of stretched drawings among the grids.
         damaged: share of drawings with tiles missing.
         unknown: share of drawings of no class, whose tiles learn to show a dash.
-        ramp: between these shares of the iterations damaged and unknown drawings grow to their full share.
+        ramp: between these shares of the iterations the drawings that are renewed grow to their full share;
+            training begins with those of the files and the stretched ones.
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
             often each failed lately.
         check_every: iterations from one short measurement to the next; training ends early when all targets
@@ -95,6 +98,7 @@ class Recipe:
     refresh_steps: tuple[int, int] = (50, 3000)
     trials: int = 300
     stability_penalty: float = 0.0
+    loss_limit: float = 0.0
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
     ticks_per_period: tuple[float, float] = (2.0, 4.0)
@@ -165,14 +169,33 @@ RECIPES: dict[str, Recipe] = {
     # reaches and what it costs.
     "forms": replace(
         FULL,
-        iterations=100_000,
+        iterations=80_000,
         undisturbed_pool=384,
-        stretched=0.12,
-        varied=0.33,
+        stretched=0.14,
+        varied=0.28,
         damaged=0.18,
-        unknown=0.2,
-        unlabelled=0.05,
-        check_every=10_000,
+        unknown=0.24,
+        unlabelled=0.04,
+        ramp=(0.02, 0.15),
+        loss_limit=1.0,
+        failure_weighting=0.3,
+        refresh_every=1000,
+        check_every=20_000,
+    ),
+    # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
+    "many": replace(
+        FULL,
+        hidden=112,
+        iterations=60_000,
+        undisturbed_pool=384,
+        stretch=1.0,
+        stretched=0.0,
+        damaged=0.06,
+        unknown=0.1,
+        unlabelled=0.02,
+        ramp=(0.1, 0.3),
+        check_every=20_000,
+        validation_runs=20,
     ),
     # For trying out drawings: three sizes, no damage, no unknown drawings.
     "quick": replace(
@@ -226,7 +249,8 @@ def find_recipe(name: str) -> Recipe:
         UsageError: there is none; the message lists the recipes.
     """
     if name not in RECIPES:
-        raise UsageError(f"no recipe '{name}'; there are: {' '.join(RECIPES)}")
+        meant = did_you_mean(name, RECIPES)
+        raise UsageError(f"no recipe '{name}'{meant}; there are: {' '.join(RECIPES)}")
     return RECIPES[name]
 
 

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -12,6 +12,7 @@ from tilenca.training.progress import Progress, Tell
 from tilenca.views.progress import show_bars
 
 LINES = 10  # per seed, where there is no terminal
+ROWS = 10  # of a measurement per line, likewise
 
 
 @contextmanager
@@ -39,6 +40,26 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
             if not console.is_terminal and news.iteration * LINES // total > printed[news.seed]:
                 printed[news.seed] = news.iteration * LINES // total
                 print(f"seed {news.seed}: {note}", file=sys.stderr, flush=True)
+
+        yield tell
+
+
+@contextmanager
+def show_measuring(where: str) -> Iterator[Callable[[str], None]]:
+    """Shows how far the last measurement is, by the rows that it is told; `where` is their file."""
+    console = Console(stderr=True)
+    begin = f"measuring the model, a minute or a few; every row will be in {where}"
+    told = 0
+    with console.status(begin) as status:
+        if not console.is_terminal:
+            print(begin, file=sys.stderr, flush=True)
+
+        def tell(row: str) -> None:
+            nonlocal told
+            told += 1
+            status.update(f"{begin}\n{told}: {row}")
+            if not console.is_terminal and told % ROWS == 0:
+                print(f"{told} rows measured", file=sys.stderr, flush=True)
 
         yield tell
 
