@@ -26,7 +26,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
-	imports types budgets sanitize docs format train bench web wheel clean
+	imports types budgets sanitize docs format train bench sweep web wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -110,6 +110,12 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 	@$(TOOL) bench.web --write docs/BENCHMARKS.md
+	@$(TOOL) bench.sweep --write docs/SWEEPS.md
+
+sweep: setup-train ## measure dead tiles and lost messages at three sizes, into docs/SWEEPS.md
+	@$(TILENCA) sweep --axis loss=0:0.6:0.1 --axis dead=0,0.02,0.05,0.1,0.2 --axis size=drawn,7x6,12x10 --runs 100 \
+		--plot --json --out build/sweep >/dev/null
+	@$(TOOL) bench.sweep --table build/sweep --write docs/SWEEPS.md
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)

@@ -23,6 +23,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "shapes": ("tilenca.commands.shapes", "draw and check a shape file, and what its classes may become"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
+    "sweep": ("tilenca.commands.sweep", "measure over every combination of conditions, on many cores"),
     "plot": ("tilenca.commands.plot", "draw how training went, or a film of what tiles show"),
     "simulate": ("tilenca.commands.simulate", "run drawings on the firmware's core, many runs at once"),
     "export": ("tilenca.commands.export", "render a model into the firmware's C++ files"),

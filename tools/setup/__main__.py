@@ -16,7 +16,7 @@ from setup.side_by_side import Awaited, side_by_side
 
 LEVELS = {
     "demo": "build the firmware and run it on emulated tiles",
-    "train": "as demo, and train models",
+    "train": "as demo, and train models and sweep conditions",
     "test": "as train, and run the tests",
     "docs": "as train, and build the documentation site",
     "check": "as test and docs, and check format, lint, types and budgets",

@@ -18,14 +18,14 @@ PYPROJECT = ROOT / "pyproject.toml"
 # The extras of pyproject.toml that each level of the set-up needs.
 EXTRAS = {
     "demo": ["firmware", "page"],
-    "train": ["train"],
+    "train": ["train", "sweep"],
     "test": ["test", "browser", "wheel"],
     "check": ["check"],
     "docs": ["docs"],
     "web": [],
 }
 # What they take on the disk, roughly: it says how long the download may be.
-SIZE_MB = {"demo": 110, "train": 970, "test": 180, "check": 310, "docs": 80, "web": 0}
+SIZE_MB = {"demo": 110, "train": 1180, "test": 180, "check": 310, "docs": 80, "web": 0}
 # The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 

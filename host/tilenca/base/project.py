@@ -33,6 +33,15 @@ def build_remedy() -> str:
     return "run `pio run`" if paths.CHECKOUT is None else "run `make demo` or `pio run`"
 
 
+def place_of(path: Path) -> str:
+    """A path as seen from the project, or from what comes with tilenca, if it is inside."""
+    full = path.resolve()
+    for root in (paths.PROJECT, paths.ROOT):
+        if root is not None and full.is_relative_to(root.resolve()):
+            return str(full.relative_to(root.resolve()))
+    return str(path)
+
+
 def install_remedy(extra: str = "") -> str:
     """The command that installs what an extra of the package brings; without one, the package's own needs.
 
@@ -41,5 +50,5 @@ def install_remedy(extra: str = "") -> str:
     """
     if paths.CHECKOUT is None:
         return f"pip install 'tilenca[{extra}]'" if extra else "pip install --force-reinstall tilenca-*.whl"
-    level = "setup-train" if extra in ("train", "plot") else "setup"
+    level = "setup-train" if extra in ("train", "plot", "sweep") else "setup"
     return f"make {level}"

@@ -130,6 +130,24 @@ def add_condition_arguments(parser: argparse.ArgumentParser) -> None:
     add("--dead", type=share, default=0.0, metavar="P", help="share of tiles that are dead, 0..1 (0)")
 
 
+def add_cluster_arguments(parser: argparse.ArgumentParser) -> None:
+    """`--jobs` or `--scheduler`: where work for many cores runs."""
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--jobs", type=whole(1, 1024), metavar="N", help="processes on this machine (one for each processor)"
+    )
+    add_scheduler_argument(where.add_argument)
+
+
+def add_scheduler_argument(add: Callable[..., Any]) -> None:
+    """The `--scheduler` option of all commands that use a cluster."""
+    add(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="a Dask scheduler instead: its address, such as tcp://10.0.0.5:8786, or the file that it writes",
+    )
+
+
 def add_port_argument(parser: argparse.ArgumentParser) -> None:
     """The `--port` option that all fleet commands share."""
     parser.add_argument(

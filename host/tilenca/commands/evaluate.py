@@ -2,10 +2,8 @@
 
 import argparse
 import json
-import math
 import threading
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +24,7 @@ from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_s
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY, validate
 from tilenca.evaluation.metrics import answer_shares, convergence_times
-from tilenca.evaluation.suites import Aims, make_suite
+from tilenca.evaluation.suites import make_suite, recorded_aims
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
@@ -34,6 +32,7 @@ from tilenca.shapes.sizes import Size, size_name
 from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Simulator
+from tilenca.sweep.emulated import EmulatedRun, Image, run_emulated
 from tilenca.views.progress import show_progress
 from tilenca.views.table import table
 
@@ -138,7 +137,7 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     for option, usual in FIXED_BY_SUITE.items():
         if getattr(args, option) != usual:
             raise UsageError(f"--suite sets its own conditions; leave --{option} out")
-    aims = _aims(model)
+    aims = recorded_aims(model)
     task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
     suite = make_suite(task, sizes, model.labels, aims, args.seed)
     say = (lambda _: None) if args.json else print
@@ -148,18 +147,6 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     else:
         print(f"{metrics['targets_held']} targets held")
     return 0
-
-
-def _aims(model: Model) -> Aims:
-    """The aims in the model's metadata; its drawings alone where the metadata have none."""
-    recipe = model.metadata.get("recipe", {})
-    stretch, damaged, unknown, varied = (
-        recipe.get(name, default)
-        for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0), ("varied", 0.0))
-    )
-    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
-        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
-    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0)
 
 
 def _at_size(drawings: Drawings, wanted: Size) -> Drawings:
@@ -196,39 +183,24 @@ def _emulate(
     elf = firmware_image()
     if not elf.exists():
         raise BuildError(f"{elf}: no firmware image; {build_remedy()}")
-    defaults = firmware_settings(elf)
+    image = Image(elf, firmware_settings(elf), model, args.model)
 
-    def run(number: int, stopped: threading.Event) -> tuple[float, float]:
+    def run(number: int, stopped: threading.Event) -> EmulatedRun:
         shape = drawings.shapes[chosen[number]]
         settings = EmulationSettings(updates=args.steps, seed=args.seed * 1000 + number)
-        emulation = Emulation(shape, model.labels, elf, settings, defaults)
 
         def look(running: Emulation, _: list[Heard]) -> None:
             tell(f"{shape.name}, run {number + 1}", running.share_done(), f"of {len(chosen)}")
             if stopped.is_set():
                 raise KeyboardInterrupt
-            _check_model(running, model, args.model)
 
-        with emulation.array:
-            emulation.run(look)
-            updates = emulation.agreed_at_update()
-            return emulation.share_right(), math.inf if updates is None else max(updates, 1)
+        return run_emulated(image, shape, settings, look)
 
     with show_progress() as tell:
         results = [result for _, result in run_side_by_side(run, range(len(chosen)))]
-    right, converged_at = zip(*results, strict=True)
-    no_regression = np.zeros(len(chosen), np.bool_)
-    return RunResults(chosen, np.array(right, np.float32), np.array(converged_at), no_regression)
-
-
-def _check_model(emulation: Emulation, model: Model, directory: Path) -> None:
-    """Refuses to measure an image that carries another model."""
-    hello = emulation.hello
-    if hello is not None and hello.model_id != model.model_id:
-        raise BuildError(
-            f"{paths.firmware_elf()}: carries model {hello.model_id:04X}, not {model.model_id:04X}; "
-            f"run: tilenca export --model {directory} && pio run"
-        )
+    right = np.array([result.right for result in results], np.float32)
+    converged_at = np.array([result.converged_at for result in results])
+    return RunResults(chosen, right, converged_at, np.zeros(len(chosen), np.bool_))
 
 
 def _report(

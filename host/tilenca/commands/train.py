@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
+from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
-from tilenca.commands.arguments import add_shapes_argument, count, seed, whole
+from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
+from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
 from tilenca.model import cost
@@ -57,9 +59,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="K",
         help="train seeds N to N+K-1, keep the best (as many as the recipe says)",
     )
-    parser.add_argument(
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
         "--jobs", type=whole(1, 64), metavar="J", help="seeds to train at once (one for each processor)"
     )
+    add_scheduler_argument(where.add_argument)
     parser.add_argument(
         "--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)"
     )
@@ -126,13 +130,16 @@ def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
         Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources) for n in plan.seeds
     ]
     at_once = min(args.jobs or processors(), len(configs))
-    threads = max(1, processors() // at_once)
+    threads = max(1, processors() // at_once) if args.scheduler is None else 1
     jobs = [
         Job(config, plan.task, plan.sizes, args.device, args.out, args.resume, threads) for config in configs
     ]
     with show_training(plan.seeds, plan.recipe.iterations) as tell:
         try:
-            failures = train_side_by_side(jobs, at_once, tell)
+            if args.scheduler is None:
+                failures = train_side_by_side(jobs, at_once, tell)
+            else:
+                failures = train_on_cluster(jobs, args.scheduler, tell)
         except (InterruptedRunError, KeyboardInterrupt) as error:
             raise _interrupted(args, str(error) or "while training") from None
     for failure in failures:
@@ -144,7 +151,7 @@ def _metadata(args: argparse.Namespace) -> dict[str, object]:
     """The model's origin, as far as its configuration does not tell it."""
     return {
         "command": _command(args),
-        "shapes": [_place(path) for path in args.shapes],
+        "shapes": [place_of(path) for path in args.shapes],
         "commit": _commit(),
         "recipe_name": args.recipe,
     }
@@ -221,16 +228,7 @@ def _interrupted(args: argparse.Namespace, where: str) -> InterruptedRunError:
     return InterruptedRunError(f"interrupted {where}; continue with: {_command(args, str)} --resume")
 
 
-def _place(path: Path) -> str:
-    """A path as seen from the project, or from what comes with tilenca, if it is inside."""
-    full = path.resolve()
-    for root in (paths.PROJECT, paths.ROOT):
-        if root is not None and full.is_relative_to(root.resolve()):
-            return str(full.relative_to(root.resolve()))
-    return str(path)
-
-
-def _command(args: argparse.Namespace, place: Callable[[Path], str] = _place) -> str:
+def _command(args: argparse.Namespace, place: Callable[[Path], str] = place_of) -> str:
     """The command that makes this model."""
     recipe = find_recipe(args.recipe)
     words = ["tilenca", "train", "--shapes", *map(place, args.shapes), "--out", place(args.out)]

@@ -215,6 +215,10 @@ class Emulation:
     def _updates(self, index: int) -> int:
         return self._voices[index].updates
 
+    def updates_done(self) -> int:
+        """The updates that all tiles together have reported."""
+        return sum(self._updates(tile.index) for tile in self.array)
+
     def label(self, segments: int) -> str:
         """The character that lit segments show; "" for a dark display, "?" for none."""
         return label_of_glyph(segments, self.labels)
@@ -224,14 +228,18 @@ class Emulation:
         return self.label(tile.segments)
 
     def share_right(self) -> float:
-        """Share of all tiles (0..1) whose display shows the shape's label now."""
-        return sum(self.shown(tile) == self.shape.label for tile in self.array) / len(self.array)
+        """Share (0..1) of the tiles with power whose display shows the shape's label now."""
+        answers = self.answers()
+        return sum(answer == self.shape.label for answer in answers) / max(len(answers), 1)
+
+    def answers(self) -> list[str]:
+        """The characters that the displays of the tiles with power show now."""
+        return [self.shown(self.array[index]) for index in self._standing()]
 
     @property
     def all_right(self) -> bool:
         """Whether every tile that has power shows the shape's label now."""
-        standing = self._standing()
-        return bool(standing) and all(self.shown(self.array[i]) == self.shape.label for i in standing)
+        return set(self.answers()) == {self.shape.label}
 
     def agreed_at_s(self) -> float | None:
         """Time from the last switch-on until all tiles stay right; None if they do not."""

@@ -11,8 +11,10 @@ from itertools import chain
 
 import numpy as np
 
+from tilenca.base.errors import UsageError
 from tilenca.evaluation.bodies import agreeing_cases, dead_cases
 from tilenca.evaluation.cases import LARGE_STEPS, MOST_STEPS, SHORT_STEPS, VERY_LARGE_STEPS, Case, steps_for
+from tilenca.model.file import Model
 from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
@@ -75,6 +77,22 @@ class Aims:
     varied: bool = False
 
 
+def recorded_aims(model: Model) -> Aims:
+    """The aims in the model's metadata; its drawings alone where the metadata have none.
+
+    Raises:
+        UsageError: the metadata are damaged.
+    """
+    recipe = model.metadata.get("recipe", {})
+    stretch, damaged, unknown, varied = (
+        recipe.get(name, default)
+        for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0), ("varied", 0.0))
+    )
+    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
+        raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
+    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0)
+
+
 def make_suite(
     task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
 ) -> Suite:
@@ -99,16 +117,16 @@ def make_suite(
         drawn,
         tuple(_size_cases(task, first, sizes, aimed)),
         tuple(_damaged_cases(task, first, aimed, aims, split)),
-        tuple(_unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
+        tuple(unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
-        _varied_case(task, aims, seed, split),
+        varied_case(task, aims, seed, split),
         tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
         tuple(agreeing_cases(task, first, aimed, seed)),
     )
 
 
-def _varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
-    """Variants of forms that training never draws."""
+def varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
+    """Variants of forms that training never draws; None where the classes are just their drawings."""
     if task.variants is None:
         return None
     random = np.random.default_rng(seed)
@@ -187,7 +205,7 @@ def _damaged_cases(
                 yield Case(kind, label, task.of(less), steps, held_out=new, aimed=aims.damaged)
 
 
-def _unknown_cases(
+def unknown_cases(
     task: Drawings, first: Sequence[Shape], aims: Aims, seed: int, split: str
 ) -> Iterable[Case]:
     """Drawings of no class: neither known nor, where classes vary, so much like one that they could be it."""

@@ -84,24 +84,46 @@ def train(job: Job, tell: Tell) -> Trained:
         TilencaError: training diverged, or the checkpoint is of no use.
     """
     with _interruptible() as interrupted:
-        trainer = make_trainer(job)
-        recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
-        check: tuple[int, int, float] | None = None
-        suite = make_suite(job.task, job.sizes, job.config.labels, aims_of(recipe), job.config.seed, CHOOSING)
-        while not trainer.done:
-            trainer.step()
-            if recipe.check_every and trainer.iteration % recipe.check_every == 0:
-                check = _check(trainer, suite)
-            if interrupted() or time.monotonic() - saved > CHECKPOINT_EVERY_S:
-                trainer.save(job.checkpoint)
-                saved = time.monotonic()
-            if interrupted():
-                raise InterruptedRunError(f"at iteration {trainer.iteration}")
-            if time.monotonic() - told > TELL_EVERY_S or trainer.done:
-                tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
-                told = time.monotonic()
-        trainer.save(job.checkpoint)  # measuring takes a while, and Ctrl-C can interrupt it too
-        return trainer.best()
+        return advance(job, tell, interrupted)
+
+
+def advance(job: Job, tell: Tell, interrupted: Callable[[], bool]) -> Trained:
+    """Trains to the end, or until it is interrupted; from any thread.
+
+    Args:
+        job: the task.
+        tell: called with the progress now and then.
+        interrupted: asked after every iteration.
+
+    Raises:
+        InterruptedRunError: it was interrupted; everything done so far is in the checkpoint.
+        TilencaError: training diverged, or the checkpoint is of no use.
+    """
+    trainer = make_trainer(job)
+    recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
+    check: tuple[int, int, float] | None = None
+    suite = _suite(job) if recipe.check_every else None
+    while not trainer.done:
+        trainer.step()
+        if suite is not None and trainer.iteration % recipe.check_every == 0:
+            check = _check(trainer, suite)
+        stop = interrupted()
+        if stop or time.monotonic() - saved > CHECKPOINT_EVERY_S:
+            trainer.save(job.checkpoint)
+            saved = time.monotonic()
+        if stop or trainer.done or time.monotonic() - told > TELL_EVERY_S:
+            tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
+            told = time.monotonic()
+        if stop:
+            raise InterruptedRunError(f"at iteration {trainer.iteration}")
+    trainer.save(job.checkpoint)  # measuring takes a while, and Ctrl-C can interrupt it too
+    return trainer.best()
+
+
+def _suite(job: Job) -> Suite:
+    """What a job is measured with while it trains; making it takes seconds."""
+    aims = aims_of(job.config.recipe)
+    return make_suite(job.task, job.sizes, job.config.labels, aims, job.config.seed, CHOOSING)
 
 
 def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
