@@ -142,9 +142,8 @@ def test_an_address_gives_the_same_run_again_to_the_byte(
         runs.append(visit.last_said())
         visit.page.goto(visit.page.url)  # what the address has become by then
     record = tmp_path / "said.jsonl"
-    words = (
-        "--shape 5 --seed 42 --boot-spread 0.2 --seconds 0.8 --fault loss=0.02 --fault cut@2E --fault off@8"
-    )
+    start = "--shape 5 --seed 42 --boot-spread 0.2 --seconds 0.8 --bootloader none"
+    words = f"{start} --fault loss=0.02 --fault cut@2E --fault off@8"
     cli.main(["emulate", *words.split(), "--elf", str(firmware), "--record", str(record)])
     capsys.readouterr()
     recorded = {}

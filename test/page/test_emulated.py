@@ -82,7 +82,7 @@ def test_the_same_start_says_the_same_bytes_as_the_command(
     faults = ["loss=0.05", "cut@3-5", "off@7"]
     words = [word for fault in faults for word in ("--fault", fault)]
     start = ["--shape", "4", "--seed", "11", "--boot-spread", "0.3", "--elf", str(firmware)]
-    cli.main(["emulate", *start, "--seconds", "0.9", "--record", str(record), *words])
+    cli.main(["emulate", *start, "--seconds", "0.9", "--bootloader", "none", "--record", str(record), *words])
     capsys.readouterr()
     source.take(
         commands.Open(

@@ -16,6 +16,7 @@ from tilenca.emulator.faults import Faults, FaultSpec
 from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile
+from tilenca.emulator.types import last_begun
 from tilenca.emulator.voice import Voice
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.line_reader import Heard, LineReader
@@ -25,8 +26,7 @@ from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import label_of_glyph
 
 SLICE_S = 0.05
-# The longest time until a firmware greets; it usually takes milliseconds.
-HELLO_S = 1.0
+HELLO_S = 1.0  # the longest time until a firmware greets; it usually takes milliseconds
 # A tile that takes this much longer than its updates should take will never finish.
 PATIENCE = 1.5
 PATIENCE_S = 3.0
@@ -257,17 +257,10 @@ class Emulation:
     def _agreed_moment_s(self) -> float | None:
         if not self.all_right:
             return None
-        since = []
-        for tile in map(self.array.__getitem__, self._standing()):
-            right_from_s = 0.0
-            was_right = False
-            for change in tile.display_changes:
-                right = self.label(change.segments) == self.shape.label
-                if right and not was_right:
-                    right_from_s = change.time_s
-                was_right = right
-            since.append(right_from_s)
-        return max(since)
+        displays = (self.array[index].display_changes for index in self._standing())
+        return max(
+            last_begun(changes, lambda lit: self.label(lit) == self.shape.label) for changes in displays
+        )
 
     def agreed_at_update(self) -> int | None:
         """The updates of the least advanced tile when all agreed; None if they do not."""

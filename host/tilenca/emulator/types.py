@@ -1,5 +1,6 @@
 """The facts that an emulated tile reports."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -64,3 +65,18 @@ class DisplayChange:
 def port_name(index: int) -> str:
     """The name of a tile's serial port, numbered from 1 in reading order."""
     return f"tile-{index + 1:02d}"
+
+
+def last_begun(changes: Iterable[DisplayChange], shows: Callable[[int], bool]) -> float:
+    """When a display last began to show something, in seconds; 0 where it never did.
+
+    Args:
+        changes: of the display, in order.
+        shows: whether these lit segments are it.
+    """
+    begun_s, shown = 0.0, False
+    for change in changes:
+        if shows(change.segments) and not shown:
+            begun_s = change.time_s
+        shown = shows(change.segments)
+    return begun_s
