@@ -69,7 +69,7 @@ class Cluster:
             return distributed.Client(self._local or _address_of(str(self.scheduler)), **more)
         except (OSError, ValueError, TypeError, ImportError) as error:
             fact = "no Dask scheduler answers there" if isinstance(error, OSError) else f"{error}"
-        # The client that failed goes now: collected while another one starts, it would wait for that one's lock.
+        # The failed client goes now: collected while another one starts, it would wait for its lock.
         gc.collect()
         raise UsageError(f"--scheduler {self.scheduler}: {fact}; start one with: {START}")
 
