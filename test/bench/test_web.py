@@ -30,11 +30,11 @@ def test_the_processor_time_of_descendants_counts() -> None:
         [sys.executable, "-c", f"print(flush=True)\n{busy}"], stdin=subprocess.PIPE
     ) as child:
         own_s = processor_s(child.pid)
-        for _ in range(2_000_000):
+        for _ in range(20_000):
             own_s = processor_s(child.pid)
-            if own_s >= 0.3:
+            if own_s >= 0.25:  # the system counts in hundredths
                 break
-        assert processor_s(os.getpid()) - before_s >= 0.29
+        assert processor_s(os.getpid()) - before_s >= 0.24
         child.communicate(b"\n")
 
 

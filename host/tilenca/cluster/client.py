@@ -1,5 +1,6 @@
 """A Dask client: its own workers on this machine, or a scheduler elsewhere. Needs the extra `sweep`."""
 
+import gc
 import json
 import logging
 import signal
@@ -69,7 +70,9 @@ class Cluster:
             return distributed.Client(self._local or _address_of(str(self.scheduler)), **more)
         except (OSError, ValueError, TypeError, ImportError) as error:
             fact = "no Dask scheduler answers there" if isinstance(error, OSError) else f"{error}"
-            raise UsageError(f"--scheduler {self.scheduler}: {fact}; start one with: {START}") from error
+        # The failed client goes now: collected while another one starts, it would wait for its lock.
+        gc.collect()
+        raise UsageError(f"--scheduler {self.scheduler}: {fact}; start one with: {START}")
 
     def reconnect(self) -> None:
         """Connects anew to a scheduler that went away, as soon as it is back.
