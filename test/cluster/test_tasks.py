@@ -3,12 +3,13 @@
 import logging
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import distributed
 import pytest
 
-from support.jobs import defect, full, refuse, times
+from support.jobs import defect, full, other_version, refuse, times
 from support.machines import machines
 from tilenca.base.errors import BuildError, TilencaError, UsageError
 from tilenca.cluster import tasks as tasks_module
@@ -79,6 +80,14 @@ def test_a_worker_that_joins_with_other_software_is_refused(
     monkeypatch.setattr(tasks_module, "fingerprint", lambda: next(answers, other))
     with pytest.raises(TilencaError, match=r"worker tcp://[^ ]+: has numpy 1\.0 instead of"):
         run_tasks(cluster, times, 1, [1], lambda *_: None)
+
+
+def test_a_worker_that_joins_after_the_check_is_checked_with_its_first_task(
+    cluster: Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "check", partial(other_version, "2.0"))  # as if none had been there before
+    with pytest.raises(TilencaError, match=r"^worker tcp://[^ ]+: PyTorch 0\.1 instead of 2\.0; install"):
+        run_tasks(cluster, times, 1, [1], lambda *_: pytest.fail("it worked"))
 
 
 def test_one_is_killed_one_joins_late_and_the_scheduler_restarts(tmp_path: Path) -> None:

@@ -126,6 +126,16 @@ def test_settings_reach_the_tiles(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(13 <= tile["updates"] <= 15 for tile in report["tiles"])
 
 
+def test_without_the_stock_bootloader_the_remedy_holds_from_a_wheel_too(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tilenca.commands.emulate.STOCK_BOOTLOADER", tmp_path / "stock.hex")
+    _, _, err = emulate(capsys, "--shape", "1", "--seconds", "0.1")
+    assert f"no {tmp_path / 'stock.hex'}, so tiles have no bootloader; install Arduino's AVR core" in err
+    assert "--bootloader none" in err
+    assert "make" not in err
+
+
 def test_a_recording_can_be_replayed(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     record = tmp_path / "record.jsonl"
     assert emulate(capsys, "--shape", "1", "--updates", "10", "--record", record)[0] == 0

@@ -1,24 +1,17 @@
 """Chromium of the system, driven by Playwright: one for all tests of a process."""
 
 import os
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-# Another browser than Debian's.
-OTHER = "TILENCA_BROWSER"
-NAMES = ("chromium", "chromium-browser", "google-chrome")
+from bench import chromium
+
 SIZES = {"phone": (390, 844), "laptop": (1280, 800), "projector": (1920, 1080)}
 # A machine that does much else besides is slow, and not wrong.
 LIMIT_MS = 120_000
-
-
-def browser_path() -> str | None:
-    """The browser's program; None: there is none."""
-    return os.environ.get(OTHER) or next(filter(None, map(shutil.which, NAMES)), None)
 
 
 RECORDER = """
@@ -44,9 +37,9 @@ RECORDER = """
 @contextmanager
 def running_browser() -> Iterator[Browser]:
     """Starts it without a window; where there is none, tests are skipped, but not by CI."""
-    path = browser_path()
+    path = chromium.program()
     if path is None:
-        reason = f"no Chromium here; install one, or set {OTHER}"
+        reason = f"no Chromium here; install one, or set {chromium.OTHER}"
         if os.environ.get("CI"):
             pytest.fail(reason)
         pytest.skip(reason)

@@ -3,12 +3,17 @@
 import os
 from typing import Any
 
-from tilenca.base.errors import BuildError
+from tilenca.base.errors import BuildError, UsageError
 
 
 def missing() -> None:
     """A check that fails."""
     raise BuildError("no simulator; run: make setup")
+
+
+def other_version(wanted: str) -> None:
+    """A check that finds another version than the wanted one."""
+    raise UsageError(f"PyTorch 0.1 instead of {wanted}; install the same everywhere")
 
 
 def pid() -> int:

@@ -14,6 +14,7 @@ from urllib.parse import quote
 
 from tilenca.base.paths import ROOT
 
+OTHER = "TILENCA_BROWSER"  # names another browser than the system's
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE_S = 120
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
@@ -21,7 +22,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 def program() -> str | None:
     """A Chromium, or None."""
-    return next(filter(None, map(shutil.which, NAMES)), None)
+    return os.environ.get(OTHER) or next(filter(None, map(shutil.which, NAMES)), None)
 
 
 def processor_s(root: int) -> float:

@@ -3,17 +3,17 @@
 The run pauses at the moment of the picture, so that the tiles are the same every time.
 """
 
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from bench import chromium
+
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "docs" / "images" / "page.png"
 RUN = "?shape=digits/8&seed=1&speed=0.1&until=0.43"
-BROWSER = "chromium"
 
 
 def main() -> None:
@@ -38,9 +38,9 @@ def main() -> None:
 
 
 def _browser() -> str:
-    found = shutil.which(BROWSER)
+    found = chromium.program()
     if found is None:
-        raise SystemExit(f"page.pictures: no {BROWSER} here; run: make setup-test")
+        raise SystemExit("page.pictures: no Chromium here; run: make setup-test")
     return found
 
 

@@ -235,9 +235,10 @@ export class Module {
   begin(bytes) {
     if (bytes > this.#scratchBytes) {
       this.free(this.#scratch);
-      this.#scratchBytes = Math.max(2 * this.#scratchBytes, bytes, 4096);
-      this.#scratch = 0;
-      this.#scratch = this.allocate(this.#scratchBytes);
+      const room = Math.max(2 * this.#scratchBytes, bytes, 4096);
+      [this.#scratch, this.#scratchBytes] = [0, 0]; // it may be that there is no more
+      this.#scratch = this.allocate(room);
+      this.#scratchBytes = room;
     }
     this.#used = 0;
   }

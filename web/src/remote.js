@@ -2,6 +2,8 @@
 import { TilencaError } from "./module.js";
 import { startWorker } from "./port.js";
 
+const CLOSED = "the array is closed; start another";
+
 /**
  * What eyes see of all tiles at a moment.
  * @typedef {object} Frame
@@ -21,6 +23,7 @@ export class RemoteArray {
   /** @type {Map<number, Waiting>} */
   #waiting = new Map();
   #last = 0;
+  #isClosed = false;
   /** Called about sixty times a second while the array plays.
    * @type {(frame: Frame) => void} */
   onFrame = () => {};
@@ -35,12 +38,7 @@ export class RemoteArray {
     this.port = port;
     port.listen(
       (message) => this.#hear(message),
-      (error) => {
-        for (const { reject } of this.#waiting.values()) {
-          reject(error);
-        }
-        this.#waiting.clear();
-      },
+      (error) => this.#giveUp(error),
     );
   }
 
@@ -83,6 +81,9 @@ export class RemoteArray {
    * @returns {Promise<any>}
    */
   #order(order, ...args) {
+    if (this.#isClosed) {
+      return Promise.reject(new TilencaError(CLOSED));
+    }
     const id = ++this.#last;
     return new Promise((resolve, reject) => {
       this.#waiting.set(id, { resolve, reject });
@@ -128,8 +129,18 @@ export class RemoteArray {
     return this.#order("pause");
   }
 
-  /** Ends the worker. */
+  /** Ends the worker; orders that have no answer yet, and later ones, are refused. */
   close() {
+    this.#isClosed = true;
     this.port.close();
+    this.#giveUp(new TilencaError(CLOSED));
+  }
+
+  /** @param {Error} error */
+  #giveUp(error) {
+    for (const { reject } of this.#waiting.values()) {
+      reject(error);
+    }
+    this.#waiting.clear();
   }
 }

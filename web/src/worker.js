@@ -17,6 +17,8 @@ let array;
 /** What the clock on the wall said when the emulated time was how much; undefined: it stands. */
 /** @type {{ wallMs: number, timeS: number, pace: number, behindS: number } | undefined} */
 let clock;
+/** Of the next turn. @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
 let shownMs = 0;
 
 function ready() {
@@ -103,7 +105,7 @@ function turn() {
     shownMs = nowMs;
     show();
   }
-  setTimeout(turn, late > LONGEST_STEP_S ? 0 : 4);
+  timer = setTimeout(turn, late > LONGEST_STEP_S ? 0 : 4);
 }
 
 /** @type {Record<string, (...args: any[]) => unknown>} */
@@ -115,14 +117,13 @@ const orders = {
   array: (name, ...args) => perform(ready(), name, args),
   tile: (index, name, ...args) => perform(ready().tile(index), name, args),
   play: (pace) => {
-    const runs = clock !== undefined;
     clock = { wallMs: performance.now(), timeS: ready().timeS, pace, behindS: 0 };
-    if (!runs) {
-      turn();
-    }
+    clearTimeout(timer); // one loop, however often somebody plays
+    turn();
   },
   pause: () => {
     clock = undefined;
+    clearTimeout(timer);
     show();
   },
 };

@@ -56,6 +56,14 @@ test("a library of another version, or with other structures, is refused", async
   await assert.rejects(Module.load(address, "simulator", 2, { tilenca_model: 32 }), /another tilenca_model/);
 });
 
+test("after a refused call for memory the next one has its room", async () => {
+  const address = new URL("tilenca_simulator.wasm", bundle.address);
+  const module = await Module.load(address, "simulator", 2, {});
+  assert.throws(() => module.begin(0xffffff00), /out of memory/);
+  module.begin(100);
+  assert.notEqual(module.take(100), 0);
+});
+
 test("members of a structure lie where C puts them", () => {
   const memory = new Uint8Array(24);
   const structure = new Structure({ one: "u8", two: "u64", three: "u8", four: "i32" });

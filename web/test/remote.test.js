@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
+import { Worker } from "node:worker_threads";
 
 import { bundle } from "./bundle.js";
 
@@ -49,6 +50,42 @@ test("a playing array shows frames, one after the other, and stands still after 
   assert.equal(last.rgb.length, 6);
   assert.deepEqual(Array.from(last.powered), [1, 1]);
   remote.close();
+});
+
+test("play, pause and play at once leave one loop", async () => {
+  const most = new Int32Array(new SharedArrayBuffer(4)); // timers that wait at the same time
+  const counting = `
+    const { workerData } = require("node:worker_threads");
+    const [set, clear, waiting] = [setTimeout, clearTimeout, new Set()];
+    globalThis.setTimeout = (call, ...more) => {
+      const timer = set(() => { waiting.delete(timer); call(); }, ...more);
+      workerData.most[0] = Math.max(workerData.most[0], waiting.add(timer).size);
+      return timer;
+    };
+    globalThis.clearTimeout = (timer) => { waiting.delete(timer); clear(timer); };
+    import(workerData.program);`;
+  const program = new URL("worker.js", bundle.address).href;
+  const worker = new Worker(counting, { eval: true, workerData: { most, program } });
+  /** @type {(order: string, ...args: unknown[]) => Promise<unknown>} */
+  const ask = (order, ...args) => {
+    worker.postMessage({ id: order, order, args });
+    return new Promise((resolve) => {
+      worker.on("message", ({ id }) => id === order && resolve(id));
+    });
+  };
+  await ask("build", options);
+  await Promise.all(["play", "pause", "play", "pause", "play"].map((order) => ask(order, 1)));
+  assert.equal(await ask("array", "timeS"), "array");
+  assert.equal(most[0], 1);
+  await worker.terminate();
+});
+
+test("orders without an answer are refused when the array is closed", async () => {
+  const remote = await RemoteArray.start(options);
+  const pending = remote.array("run", 0.1);
+  remote.close();
+  await assert.rejects(pending, /^TilencaError: the array is closed/);
+  await assert.rejects(remote.array("timeS"), /the array is closed/);
 });
 
 test("a fault ends the play, and is told", async () => {

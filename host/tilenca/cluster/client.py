@@ -29,7 +29,8 @@ PATIENCE_S = 600.0  # for a scheduler that restarts, and for the first worker
 LOOK_S = 0.5
 START = "dask scheduler, and on each machine: dask worker ADDRESS"
 
-# Called in every worker before it gets work; raises what is missing there.
+# Called in every worker before it gets work, and before each task, so it should be quick when called again;
+# raises what is missing there.
 Check = Callable[[], None]
 
 

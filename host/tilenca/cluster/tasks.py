@@ -16,7 +16,7 @@ import distributed
 from distributed.scheduler import KilledWorker
 
 from tilenca.base.errors import BuildError, TilencaError
-from tilenca.cluster.client import Cluster
+from tilenca.cluster.client import Check, Cluster
 from tilenca.cluster.fingerprint import Fingerprint, fingerprint
 
 Task = TypeVar("Task")
@@ -113,6 +113,7 @@ class _Run:
             function=self.function,
             shared=self.common,
             ours=self.ours,
+            check=self.cluster.check,
             key=keys,
         )
         for key, number, future in zip(keys, numbers, futures, strict=True):
@@ -170,11 +171,15 @@ def _same(value: Any) -> Any:
     return value
 
 
-def _work(task: Any, function: Callable[[Any, Any], Any], shared: Any, ours: Fingerprint) -> Any:
-    """Runs one task in a worker; a failure names the worker."""
+def _work(
+    task: Any, function: Callable[[Any, Any], Any], shared: Any, ours: Fingerprint, check: Check | None
+) -> Any:
+    """Runs one task in a worker, which may have joined unseen; a failure names the worker."""
     try:
         if differences := ours.differences(fingerprint()):
             raise MisfitError(f"has {differences}; install the same wheel on every machine")
+        if check is not None:
+            check()
         return function(shared, task)
     except (TilencaError, OSError, MemoryError) as error:
         kind = type(error) if isinstance(error, MisfitError | BuildError) else TilencaError

@@ -212,7 +212,10 @@ def _check_combinations(args: argparse.Namespace) -> None:
 def _bootloader(given: str | None) -> Path | None:
     if given is None:
         if not STOCK_BOOTLOADER.exists():
-            warn(f"tilenca: no {STOCK_BOOTLOADER}, so tiles have no bootloader; `make setup` installs it")
+            warn(
+                f"tilenca: no {STOCK_BOOTLOADER}, so tiles have no bootloader; install Arduino's AVR core "
+                f"(Debian: arduino-core-avr), or say so with --bootloader {NO_BOOTLOADER}"
+            )
             return None
         return STOCK_BOOTLOADER
     if given == NO_BOOTLOADER:

@@ -32,6 +32,7 @@ def train_on_cluster(
     """
     from tilenca.cluster.client import open_cluster
     from tilenca.cluster.tasks import run_tasks
+    from tilenca.training.checkpoint import store_checkpoint
     from tilenca.training.slices import SLICE_S, TORCH, Slice, check_torch, train_slice
 
     failures: list[str] = []
@@ -43,7 +44,7 @@ def train_on_cluster(
             failures.append(result.failure)
             return None
         assert result.checkpoint is not None
-        keep(begin.job, result.checkpoint)
+        store_checkpoint(begin.job.checkpoint, result.checkpoint)
         return None if result.done else result
 
     begins = [Slice(job, job.checkpoint.read_bytes() if _resumes(job) else None) for job in jobs]
@@ -58,10 +59,3 @@ def train_on_cluster(
 
 def _resumes(job: "Job") -> bool:
     return job.resume and job.checkpoint.exists()
-
-
-def keep(job: "Job", checkpoint: bytes) -> None:
-    """Writes a checkpoint whole or not at all."""
-    partial_file = job.checkpoint.with_suffix(".part")
-    partial_file.write_bytes(checkpoint)
-    partial_file.replace(job.checkpoint)

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import UsageError
+from tilenca.base.whole_file import write_whole
 
 DEFAULT = Path("tiles.toml")
 MAX_TILE_ID = 255
@@ -136,10 +137,4 @@ def write_tiles(path: Path, places: Iterable[Place]) -> None:
     Raises:
         UsageError: it cannot be written.
     """
-    beside = path.with_name(path.name + ".part")
-    try:
-        beside.write_text(format_tiles(places), encoding="utf-8")
-        beside.replace(path)
-    except OSError as error:
-        beside.unlink(missing_ok=True)
-        raise UsageError(f"{path}: {error.strerror}; give --tiles a file that can be written") from error
+    write_whole(path, format_tiles(places).encode(), "give --tiles a file that can be written", UsageError)

@@ -105,7 +105,7 @@ def _identity(
 ) -> dict[str, Any]:
     """What decides the table, under the words of the command line."""
     return {
-        **asdict(fingerprint()),
+        **{name: what for name, what in asdict(fingerprint()).items() if name != "rollout"},  # of training
         "--engine": wish.engine,
         "--seed": wish.seed,
         "--runs": wish.runs,

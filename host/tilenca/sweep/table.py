@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.errors import UsageError
 from tilenca.base.project import install_remedy
+from tilenca.base.whole_file import write_whole
 from tilenca.evaluation.metrics import wilson
 from tilenca.sweep.axes import AXES
 from tilenca.sweep.counts import Counts
@@ -183,15 +184,7 @@ def read_parquet(path: Path) -> tuple[list[Values], dict[str, str]]:
 
 
 def _write(path: Path, data: bytes) -> Path:
-    """Writes a file whole or not at all."""
-    partial = path.with_name(f"{path.name}.part")
-    try:
-        partial.write_bytes(data)
-        partial.replace(path)
-    except OSError as error:
-        raise TilencaError(f"{path}: {error.strerror}; make room there, and run the same again") from error
-    finally:
-        partial.unlink(missing_ok=True)
+    write_whole(path, data, "make room there, and run the same again")
     return path
 
 

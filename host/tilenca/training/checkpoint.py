@@ -6,7 +6,8 @@ from typing import Any
 
 import torch
 
-from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.errors import UsageError
+from tilenca.base.whole_file import write_whole
 
 State = dict[str, Any]
 
@@ -24,14 +25,12 @@ def write_checkpoint(path: Path, config: State, state: State) -> None:
     """
     buffer = io.BytesIO()
     torch.save({"config": config, **state}, buffer)  # torch's exception hides a full disk
-    partial = path.with_suffix(".part")
-    try:
-        partial.write_bytes(buffer.getbuffer())
-        partial.replace(path)
-    except OSError as error:
-        raise TilencaError(f"{path}: {error.strerror}; make room there, or give another --out") from error
-    finally:
-        partial.unlink(missing_ok=True)
+    store_checkpoint(path, buffer.getbuffer())
+
+
+def store_checkpoint(path: Path, data: bytes | memoryview) -> None:
+    """Writes the bytes of a checkpoint, which may come from elsewhere, like `write_checkpoint`."""
+    write_whole(path, data, "make room there, or give another --out")
 
 
 def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
