@@ -37,8 +37,8 @@ def agreeing_cases(task: Drawings, first: Sequence[Shape], aimed: Sizes, seed: i
             yield Case("one answer", title, task.of(any_drawing), steps)
         more = list(_with_one_more(shapes, random))
         if more:
-            title = f"{name}, one tile too many: the digit or a dash, but one answer"
-            yield Case("one tile too many", title.replace("digit", "class"), task.of(more), steps)
+            title = f"{name}, one tile too many: the class or a dash, but one answer"
+            yield Case("one tile too many", title, task.of(more), steps)
 
 
 def _any_connected(drawings: Sequence[Rows], random: np.random.Generator) -> Iterator[Rows]:
