@@ -11,8 +11,10 @@ import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
 import { Notice } from "./components/notice.js";
 import { Verdict } from "./components/verdict.js";
-import { cellsOf, known, readAddress, standingFaults, writeAddress } from "./stream/address.js";
+import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
+import { faultsNow, kindsChangedBy } from "./stream/faults.js";
 import { openSocket } from "./stream/socket.js";
+import { BROKE_OFF, TOO_MANY_PAGES, WRONG_TOKEN } from "./stream/source.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
 
@@ -20,9 +22,18 @@ const tiles = new Tiles();
 /** @type {Start | null} */
 let start = null;
 let noise = 0;
+let lastRefused = "";
+
+/** What the run was given at its start, and the kinds of it that a hand has changed since. @type {string[]} */
+let given = [];
+/** @type {Set<string>} */
+const handled = new Set();
 
 /** @param {Command} command */
-const send = (command) => source.send(command);
+function send(command) {
+  for (const kind of kindsChangedBy(command)) handled.add(kind);
+  source.send(command);
+}
 
 const deeds = {
   /** @param {string | null} port */
@@ -96,6 +107,8 @@ function slideUnder(drawing) {
 /** Begins a run. @param {Start} wanted */
 function open(wanted) {
   deeds.select(null);
+  given = wanted.faults;
+  handled.clear();
   noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
   bar.showNoise(noise);
   const { cells, seed, speed, faults, spread, until } = wanted;
@@ -109,7 +122,7 @@ function remember() {
   if (!start || !laid.length) return;
   start.cells = laid.map((tile) => tile.place);
   const isUp = tiles.time > start.spread + 0.1;
-  if (isUp) start.faults = standingFaults(tiles, noise);
+  if (isUp) start.faults = faultsNow(tiles, given, handled, noise);
   const address = writeAddress(start, tiles.drawings);
   if (address !== location.search) history.replaceState(null, "", address + location.hash);
   drawings.mark(known(start.cells, tiles.drawings)?.name ?? "");
@@ -127,6 +140,7 @@ function show(events) {
   }
   if (tiles.refused) {
     notice.say(tiles.refused);
+    lastRefused = tiles.refused;
     tiles.refused = "";
     if (tiles.runs === 0 && start?.faults.length) open((start = { ...start, faults: [] }));
   }
@@ -154,8 +168,22 @@ url.hash = "";
 const source = openSocket(url.href, {
   onEvents: show,
   onOpen: () => notice.clear(),
-  onLost: (seconds) => notice.stay(`The tiles are out of reach; trying again in ${Math.ceil(seconds)} s`),
+  onLost: (seconds, code) => notice.stay(lostWords(code, `trying again in ${Math.ceil(seconds)} s`)),
 });
+
+/** @param {number} code of the end of the connection @param {string} again when it is tried again */
+function lostWords(code, again) {
+  switch (code) {
+    case WRONG_TOKEN:
+      return "The address has not the right token: open the one that tilenca page has printed.";
+    case BROKE_OFF:
+      return `${lastRefused || "The run broke off"}; reload the page to begin again.`;
+    case TOO_MANY_PAGES:
+      return `${lastRefused || "Too many pages are open already; close one of them"}; ${again}`;
+    default:
+      return `The tiles are out of reach; ${again}`;
+  }
+}
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => send({ do: "rest", on: document.hidden }));

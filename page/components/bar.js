@@ -7,7 +7,8 @@ import { element, icon, setText } from "./dom.js";
 /** Speeds to choose from, times real time; 0: as fast as it can. */
 export const SPEEDS = [0.001, 0.01, 0.03, 0.1, 0.3, 1, 0];
 
-// Percent; a frame has thirty bytes and is lost with one of them, so that more is no different from a cut cable.
+// Percent; a frame has thirty bytes and is lost with one of them, so that more is hardly different from a cut
+// cable. The slider reaches further only where a link says more.
 const MOST_LOSS = 10;
 
 const ICONS = {
@@ -111,6 +112,7 @@ export class Bar {
   /** @param {number} loss */
   showNoise(loss) {
     const percent = Math.round(loss * 1000) / 10;
+    this.noise.max = String(Math.max(Number(this.noise.max), percent));
     this.noise.value = String(percent);
     const words = loss > 0 ? `${percent} %` : "none";
     setText(this.noiseWords, words);

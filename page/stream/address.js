@@ -1,8 +1,6 @@
 // The address of the page: what a run begins with, so that a reload or a shared link gives the same run.
 
 /** @import { Drawing, Place } from "./source.js" */
-/** @import { Tiles } from "./tiles.js" */
-import { SIDES } from "./source.js";
 
 /**
  * @typedef {{cells: Place[], seed: number, speed: number, faults: string[], spread: number, until: number | null,
@@ -69,20 +67,6 @@ export function readAddress(query, drawings) {
     until: Number.isNaN(until) ? null : until,
     model: given.get("model") ?? "",
   };
-}
-
-/** The faults that stand now, as `tilenca emulate --fault` takes them. @param {Tiles} tiles @param {number} noise */
-export function standingFaults(tiles, noise) {
-  const laid = tiles.laid();
-  const faults = noise > 0 ? [`loss=${Number(noise.toFixed(3))}`] : [];
-  laid.forEach((tile, index) => {
-    if (!tile.powered) faults.push(`off@${index + 1}`);
-    for (const side of [1, 2]) {
-      const other = tiles.neighbour(tile, side);
-      if (other && tiles.isCut(tile, side)) faults.push(`cut@${index + 1}${SIDES[side]}`);
-    }
-  });
-  return faults;
 }
 
 /**

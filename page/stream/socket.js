@@ -1,9 +1,12 @@
 // The source that is a server: a WebSocket, opened again whenever it is lost.
 
 /** @import { Command, Listener, Source, StreamEvent } from "./source.js" */
+import { BROKE_OFF, WRONG_TOKEN } from "./source.js";
 
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
+// After these another try would end the same way.
+const FINAL = [WRONG_TOKEN, BROKE_OFF];
 
 /**
  * @param {string} url of the stream, ws: or wss:
@@ -21,6 +24,7 @@ export function openSocket(url, listener) {
   let isDue = false;
 
   function paint() {
+    if (!isDue) return;
     isDue = false;
     const shown = events;
     events = [];
@@ -36,12 +40,14 @@ export function openSocket(url, listener) {
   function connect() {
     socket = new WebSocket(url);
     socket.onopen = () => {
-      waitMs = FIRST_WAIT_MS;
       batch = 0;
-      listener.onOpen();
     };
     socket.onmessage = (message) => {
       const told = JSON.parse(message.data);
+      if (told.events.some((/** @type {StreamEvent} */ event) => event.stream !== undefined)) {
+        waitMs = FIRST_WAIT_MS; // not as soon as it is open: a server that is full opens it to say so
+        listener.onOpen();
+      }
       events.push(...told.events);
       batch = told.batch;
       if (!isDue) {
@@ -49,10 +55,12 @@ export function openSocket(url, listener) {
         requestAnimationFrame(paint);
       }
     };
-    socket.onclose = () => {
+    socket.onclose = ({ code }) => {
       socket = null;
       if (closed) return;
-      listener.onLost(waitMs / 1000);
+      paint(); // what it said last comes before the news that it has gone
+      listener.onLost(waitMs / 1000, code);
+      if (FINAL.includes(code)) return;
       setTimeout(connect, waitMs);
       waitMs = Math.min(waitMs * 2, LONGEST_WAIT_MS);
     };

@@ -32,11 +32,15 @@
  * @typedef {{
  *   onEvents: (events: StreamEvent[]) => void,
  *   onOpen: () => void,
- *   onLost: (seconds: number) => void,
+ *   onLost: (seconds: number, code: number) => void,
  * }} Listener
  */
 
 export const STREAM_VERSION = 1;
+/** Why a server that was reached closes (codes of RFC 6455). */
+export const WRONG_TOKEN = 1008;
+export const BROKE_OFF = 1011;
+export const TOO_MANY_PAGES = 1013;
 export const SIDES = "NESW";
 /** Rows and columns from a tile to its neighbour on each side. @type {Place[]} */
 export const OFFSETS = [[-1, 0], [0, 1], [1, 0], [0, -1]];

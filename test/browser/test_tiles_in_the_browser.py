@@ -3,13 +3,16 @@
 import json
 import re
 from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 from playwright.sync_api import Browser
 
 from support.browser import Visit, new_visit
 from support.page_server import PageServer, page_server
+from support.web_socket import WebSocketClient
 from tilenca import cli
+from tilenca.page.server import MOST_CLIENTS
 
 QUICK = "?speed=0.5&spread=0.1"
 
@@ -25,7 +28,7 @@ def test_opened_it_runs_and_the_tiles_agree(visit: Visit, server: PageServer) ->
 
 
 def test_a_pulled_tile_makes_the_others_change_their_minds(visit: Visit, server: PageServer) -> None:
-    """An 8 without its lower left tile is a 9; put in again, an 8."""
+    """An 8 without the left tile of its fourth row is a 9; put in again, an 8."""
     visit.page.goto(server.url + QUICK)
     visit.wait_for_verdict("All 16 tiles show 8")
     start = visit.middle("[data-port=tile-11]")
@@ -161,6 +164,58 @@ def test_an_address_with_a_fault_that_cannot_be_says_so_and_runs_without(
     visit.page.goto(f"{server.url}?draw=11&spread=0&fault=off@77")
     visit.page.locator("#notice", has_text="no tile '77'").wait_for()
     visit.wait_for_verdict("All 2 tiles show")
+
+
+def test_faults_that_no_hand_has_changed_stay_in_the_address(visit: Visit, server: PageServer) -> None:
+    given = ["flip=0.0001@3S", "drift=20", "loss=0.001@1S", "reset@2:0.4", "cut@3-4", "loss=0.005"]
+    query = "&".join(f"fault={fault}" for fault in given)
+
+    def faults() -> list[str]:
+        return parse_qs(urlsplit(visit.page.url).query).get("fault", [])
+
+    visit.page.goto(f"{server.url}?shape=digits/1&speed=1&spread=0&until=0.6&{query}")
+    visit.page.get_by_role("button", name="Go on").wait_for()
+    visit.wait_until("location.search.includes('model=')")
+    visit.page.wait_for_timeout(600)  # it looks at the board every half second
+    assert faults() == given
+    assert visit.page.locator("#noise").input_value() == "0.5"
+    visit.page.locator("#noise").fill("2")
+    visit.wait_until("location.search.includes('loss=0.02')")
+    assert faults() == ["flip=0.0001@3S", "drift=20", "reset@2:0.4", "cut@3-4", "loss=0.02"]
+    visit.page.locator("[data-port=tile-01]").click()
+    visit.page.get_by_role("button", name="Pull out").click()
+    visit.wait_until("location.search.includes('flip=0.0001@2S')")
+    assert faults() == ["flip=0.0001@2S", "drift=20", "reset@1:0.4", "loss=0.02", "cut@2S"]
+
+
+def test_the_slider_shows_the_losses_of_a_link(visit: Visit, server: PageServer) -> None:
+    visit.page.goto(f"{server.url}?shape=digits/1&spread=0&fault=loss=0.4")
+    visit.page.locator("[data-port=tile-05]").wait_for()
+    assert visit.page.locator("#noise").input_value() == "40"
+
+
+def test_one_page_too_many_is_told_for_as_long_as_it_waits(browser: Browser, server: PageServer) -> None:
+    others = [WebSocketClient(server.address) for _ in range(MOST_CLIENTS)]
+    for other in others:
+        other.watch("stream")
+    with new_visit(browser) as visit:
+        visit.page.goto(server.url)
+        notice = visit.page.locator("#notice", has_text="close one of them; trying again in 2 s")
+        notice.wait_for()  # the waits grow
+        for other in others:
+            other.close()
+        visit.page.locator("[data-port=tile-01]").wait_for()
+        visit.wait_until("document.getElementById('notice').hidden")
+
+
+def test_a_wrong_token_is_told_and_not_tried_again(browser: Browser, firmware: Path) -> None:
+    with page_server(firmware, listen="0.0.0.0:0") as server, new_visit(browser) as visit:
+        visit.record_stream()
+        port = urlsplit(server.url).port
+        visit.page.goto(f"http://127.0.0.1:{port}/#token=guess")
+        visit.page.locator("#notice", has_text="not the right token").wait_for()
+        visit.page.wait_for_timeout(1500)
+        assert visit.page.evaluate("stream.opened") == 1
 
 
 def test_surprises_happen(visit: Visit, server: PageServer) -> None:

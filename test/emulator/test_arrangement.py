@@ -10,6 +10,7 @@ from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator.arrangement import Arrangement
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.faults import parse as parse_fault
 from tilenca.shapes.file import Shape
 
 LABELS = tuple("0123456789")
@@ -19,7 +20,7 @@ Make = Callable[..., tuple[Emulation, Arrangement]]
 
 @contextmanager
 def arranged(
-    firmware: Path, rows: Sequence[str], **settings: float
+    firmware: Path, rows: Sequence[str], **settings: object
 ) -> Iterator[tuple[Emulation, Arrangement]]:
     shape = Shape("-", tuple(rows), "-")
     wanted = EmulationSettings(boot_spread_s=0.0, **settings)  # type: ignore[arg-type]
@@ -121,6 +122,32 @@ def test_losses_hold_for_cables_that_come_later(firmware: Path) -> None:
         board.lose(0.0)
         emulation.pass_time(0.4)
         assert links(emulation, 1) == "-ESW"
+
+
+@pytest.mark.parametrize("when", ["", ":0-0.6", ":0.3-0.6"])
+def test_losses_that_the_run_began_with_hold_for_cables_that_come_later(firmware: Path, when: str) -> None:
+    faults = (parse_fault(f"loss=1{when}"),)
+    with arranged(firmware, ROW_OF_THREE, faults=faults) as (emulation, board):
+        emulation.pass_time(0.2)
+        board.put((1, 1))  # tile 4, in the south of tile 2
+        emulation.pass_time(0.2)
+        board.move(2, (1, 0))
+        emulation.pass_time(0.19)
+        assert [links(emulation, tile) for tile in (2, 3)] == ["----"] * 2
+        emulation.pass_time(0.4)
+        whole = ["NE--", "N--W"] if when else ["----"] * 2
+        assert [links(emulation, tile) for tile in (2, 3)] == whole
+
+
+def test_a_new_cable_has_no_fault_of_the_one_that_lay_there(firmware: Path) -> None:
+    with arranged(firmware, ROW_OF_THREE, faults=(parse_fault("loss=1@1-2"),)) as (emulation, board):
+        emulation.pass_time(0.3)
+        assert links(emulation, 0) == "----"
+        board.pull(1)
+        board.put((0, 1))
+        board.connect(0, EAST, whole=True)
+        emulation.pass_time(0.4)
+        assert links(emulation, 0) == "-E--"
 
 
 def test_a_frozen_tile_updates_no_more_and_goes_on_when_it_thaws(firmware: Path) -> None:

@@ -39,6 +39,16 @@ def test_of_what_waits_the_latest_counts() -> None:
     ]  # fmt: skip
 
 
+def test_of_lines_that_are_no_sentence_the_latest_of_each_tile_waits() -> None:
+    outbox = Outbox()
+    outbox.put([tile("tile-01", 7)])
+    for n in range(1000):
+        outbox.put(
+            [stream.raw_event(n, "tile-01", line) for line in (b"debug %d, x" % n, b"$LINK,1,2,%d,*00" % n)]
+        )
+    assert outbox.take()[1] == [tile("tile-01", 7), stream.raw_event(999, "tile-01", b"$LINK,1,2,999,*00")]
+
+
 def test_frames_and_refusals_have_an_end() -> None:
     outbox = Outbox()
     outbox.put([stream.frame_event(n, "tile-01", "E", b"\1") for n in range(5 * MOST_FRAMES)])

@@ -5,9 +5,9 @@ import threading
 import pytest
 
 from tilenca.base.errors import TilencaError, UsageError
-from tilenca.page.session import MOST_COMMANDS, Session
+from tilenca.page.session import MOST_COMMANDS, STEP_SLICE_S, Session
 from tilenca.protocol.stream import StreamEvent, place_event, stream_event
-from tilenca.protocol.stream_commands import Pull, Put, Reset, StreamCommand
+from tilenca.protocol.stream_commands import Pull, Put, Reset, Step, StreamCommand
 
 LIMIT_S = 20
 
@@ -18,6 +18,7 @@ class Scripted:
     def __init__(self) -> None:
         self.told: list[StreamEvent] = []
         self.broken = self.closed = False
+        self.taken: list[StreamCommand] = []
         self.in_take = threading.Event()
         self.go_on = threading.Event()
         self.go_on.set()
@@ -26,9 +27,12 @@ class Scripted:
         return [stream_event("scripted")]
 
     def take(self, command: StreamCommand) -> None:
+        self.taken.append(command)
         self.in_take.set()
         assert self.go_on.wait(LIMIT_S)
         match command:
+            case Put(0, 1):
+                raise ZeroDivisionError("no such share")
             case Put(row, col):
                 self.told.append(place_event(0, "tile-01", (row, col)))
             case Reset():
@@ -104,6 +108,50 @@ def test_a_source_that_cannot_be_made_is_one_line() -> None:
     heard = Heard()
     session = Session(fail, heard.take)
     assert heard.wait_for(1)[0]["refused"] == "firmware.elf: no such file"
+    session.close()
+
+
+def test_one_that_is_closed_begins_no_command_that_waits() -> None:
+    source, heard = Scripted(), Heard()
+    source.go_on.clear()
+    session = Session(lambda: source, heard.take)
+    for _ in range(MOST_COMMANDS):
+        session.offer(Step(10))
+    assert source.in_take.wait(LIMIT_S)
+    closing = threading.Thread(target=session.close)
+    closing.start()
+    assert session._ended.wait(LIMIT_S)
+    assert closing.is_alive()  # its thread is still at work
+    source.go_on.set()
+    closing.join(LIMIT_S)
+    assert not closing.is_alive()
+    assert len(source.taken) == 1
+    assert source.closed
+
+
+@pytest.mark.parametrize("seconds", [16e-6, 0.02, 0.05, 0.1, 0.3, 0.3001, 10.0])
+def test_a_step_is_made_of_short_ones(seconds: float) -> None:
+    source, heard = Scripted(), Heard()
+    session = Session(lambda: source, heard.take)
+    session.offer(Step(seconds))
+    session.offer(Put(2, 3))
+    heard.wait_for(2)
+    session.close()
+    steps = [command.seconds for command in source.taken if isinstance(command, Step)]
+    assert sum(steps) == pytest.approx(seconds)
+    assert min(steps) > 0
+    assert max(steps) <= STEP_SLICE_S
+    assert len(steps) <= seconds / STEP_SLICE_S + 1
+
+
+def test_a_mistake_in_a_source_is_told_and_ends_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    source, heard, ended = Scripted(), Heard(), threading.Event()
+    session = Session(lambda: source, heard.take, ended.set)
+    session.offer(Put(0, 1))
+    assert ended.wait(LIMIT_S)
+    assert heard.events[-1]["refused"] == "the run broke off: ZeroDivisionError: no such share"
+    assert source.closed
+    assert "Traceback" in capsys.readouterr().err
     session.close()
 
 

@@ -15,10 +15,11 @@ LIMIT_MS = 120_000
 
 
 RECORDER = """
-  window.stream = { said: {}, sent: [] };
+  window.stream = { said: {}, sent: [], opened: 0 };
   window.WebSocket = class extends WebSocket {
     constructor(url) {
       super(url);
+      stream.opened++;
       this.addEventListener("message", (message) => {
         for (const event of JSON.parse(message.data).events) {
           if (event.run) stream.said = {};

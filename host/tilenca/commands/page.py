@@ -45,9 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add(
         "--no-open",
-        "--no-browser",
         action="store_true",
-        dest="no_open",
         help="print the address only, and open no browser",
     )
 

@@ -35,7 +35,6 @@ class Arrangement:
         self._emulation, self._array = emulation, emulation.array
         self.places: dict[int, Place] = dict(enumerate(cells))
         self.traffic = Traffic(self._array, emulation.cables)
-        self._loss = 0.0
 
     # --- questions ---
 
@@ -127,9 +126,7 @@ class Arrangement:
 
     def lose(self, share: float) -> None:
         """From now on so many of the bytes on all cables are lost, 0..1."""
-        self._loss = share
-        for link in self._emulation.cables:
-            self._emulation.faults.spoil([link[:2], link[2:]], "loss", share)
+        self._emulation.faults.spoil_all("loss", share)
 
     # --- how ---
 
@@ -152,5 +149,4 @@ class Arrangement:
             self._array.link(*link)
             self._emulation.cables.append(link)
             self.traffic.watch(link)
-            if self._loss:
-                self._emulation.faults.spoil([link[:2], link[2:]], "loss", self._loss)
+            self._emulation.faults.plug_in(link)

@@ -110,6 +110,7 @@ class Faults:
     Attributes:
         restarted_s: the time of the last reset or switch-on of each tile that had one.
         cut: the ends at which cables are cut now.
+        everywhere: the LINK_KINDS that all cables have now.
     """
 
     array: Array
@@ -117,6 +118,7 @@ class Faults:
     seed: int
     restarted_s: dict[int, float] = field(default_factory=dict)
     cut: set[End] = field(default_factory=set)
+    everywhere: dict[str, float] = field(default_factory=dict)
     _due: list[tuple[float, int, Callable[[], None]]] = field(default_factory=list)
     _spoilt: dict[End, dict[str, float]] = field(default_factory=dict)
 
@@ -128,9 +130,16 @@ class Faults:
         """
         if spec.kind in LINK_KINDS:
             ends = self._ends(spec)
-            self._plan(spec.from_s, lambda: self.spoil(ends, spec.kind, spec.value))
+
+            def set_to(value: float) -> None:
+                if spec.where:
+                    self.spoil(ends, spec.kind, value)
+                else:
+                    self.spoil_all(spec.kind, value)
+
+            self._plan(spec.from_s, partial(set_to, spec.value))
             if spec.to_s is not None:
-                self._plan(spec.to_s, lambda: self.spoil(ends, spec.kind, 0.0))
+                self._plan(spec.to_s, partial(set_to, 0.0))
         elif spec.kind == "cut":
             self._plan_switch(spec, [partial(self.connect, end) for end in self._ends(spec)])
         elif spec.kind == "off":
@@ -197,6 +206,19 @@ class Faults:
             )
             with suppress(UsageError):  # the cable has gone with its tile
                 self.array.set_fault(*end, fault, self.seed)
+
+    def spoil_all(self, kind: str, value: float) -> None:
+        """Sets one of LINK_KINDS on all cables, and on those that come later."""
+        self.everywhere[kind] = value
+        self.spoil(sorted(end for link in self.links for end in (link[:2], link[2:])), kind, value)
+
+    def plug_in(self, link: Link) -> None:
+        """A new cable: it has the faults that all cables have now, and no other."""
+        ends = [link[:2], link[2:]]
+        for end in ends:
+            self._spoilt.pop(end, None)
+        for kind, value in self.everywhere.items():
+            self.spoil(ends, kind, value)
 
     def connect(self, end: End, on: bool) -> None:
         """Cuts the cable at an end, or mends it."""

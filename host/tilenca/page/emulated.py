@@ -29,6 +29,7 @@ from tilenca.protocol.stream import (
     run_event,
     stream_event,
 )
+from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.glyphs import looks_of
 
@@ -172,10 +173,7 @@ class EmulatedSource:
 
     def _shape(self, cells: Sequence[Place]) -> Shape:
         """The drawing with these cells: one of those offered, or an own one."""
-        top, left = min(row for row, _ in cells), min(col for _, col in cells)
-        inked = {(row - top, col - left) for row, col in cells}
-        height, width = max(row for row, _ in inked) + 1, max(col for _, col in inked) + 1
-        rows = tuple("".join("#" if (r, c) in inked else "." for c in range(width)) for r in range(height))
+        rows = rows_of(cells)
         known = (one.shape for one in self._drawings if one.shape.rows == rows)
         return next(known, Shape(UNKNOWN, rows, UNKNOWN))
 

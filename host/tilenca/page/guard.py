@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 # The page loads nothing from elsewhere, and nobody else may show it in a frame or run code in it.
@@ -101,8 +102,7 @@ class GuardedApp:
         if status and scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008})
         elif status:
-            await send({"type": "http.response.start", "status": status, "headers": []})
-            await send({"type": "http.response.body", "body": b"refused\n"})
+            await PlainTextResponse("refused\n", status)(scope, receive, _with_headers(send))
         else:
             await self._app(scope, receive, _with_headers(send))
 

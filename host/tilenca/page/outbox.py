@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from tilenca.protocol.sentences import LinkSentence, parse_sentence, type_of
 from tilenca.protocol.stream import StreamEvent
 
 # Frames and refusals that wait; older ones give way.
@@ -35,9 +36,8 @@ class Outbox:
             if kind in event:
                 self._counters[kind] += 1
                 return kind, self._counters[kind] % most
-        if "raw" in event:  # the latest sentence of each name, of $LINK the latest of each side
-            fields = str(event["raw"]).split(",", 4)
-            return "raw", port, fields[0], fields[3] if fields[0] == "$LINK" and len(fields) > 3 else ""
+        if "raw" in event:
+            return "raw", port, *_subject(str(event["raw"]))
         for kind in ("stream", "run", "pace"):
             if kind in event:
                 return (kind,)
@@ -46,6 +46,11 @@ class Outbox:
             port,
             event.get("side"),
         )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing waits."""
+        return not self._waiting
 
     @property
     def may_send(self) -> bool:
@@ -63,3 +68,11 @@ class Outbox:
         """The client has shown a batch and all before it; a number that was not sent counts for nothing."""
         if self._seen < batch <= self._sent:
             self._seen = batch
+
+
+def _subject(raw: str) -> tuple[str, str]:
+    """The name of a sentence, and the side of a `$LINK`; one subject for all lines that are no sentence."""
+    sentence = parse_sentence(raw)
+    if isinstance(sentence, LinkSentence):
+        return "LINK", sentence.side
+    return ("" if sentence is None else type_of(sentence)), ""

@@ -23,7 +23,7 @@ from tilenca.protocol.stream_commands import MAX_TEXT, Seen, parse_command
 MOST_CLIENTS = 4
 # Bytes; a character takes at most four.
 MAX_MESSAGE = 4 * MAX_TEXT
-TRY_AGAIN_LATER = 1013
+POLICY_VIOLATION, INTERNAL_ERROR, TRY_AGAIN_LATER = 1008, 1011, 1013
 GOODBYE_S = 1
 
 
@@ -35,12 +35,22 @@ class Client:
         self._outbox = Outbox()
         self._news = asyncio.Event()
         self._loop = asyncio.get_running_loop()
-        self._session = Session(make_source, self._deliver)
+        self._is_over = False
+        self._session = Session(make_source, self._deliver, self._note_end)
 
     def _deliver(self, events: list[StreamEvent]) -> None:
         """Takes events in the session's thread."""
         with suppress(RuntimeError):  # the server has ended meanwhile
             self._loop.call_soon_threadsafe(self._post, events)
+
+    def _note_end(self) -> None:
+        """Hears in the session's thread that it ends."""
+        with suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._end)
+
+    def _end(self) -> None:
+        self._is_over = True
+        self._news.set()
 
     def _post(self, events: list[StreamEvent]) -> None:
         self._outbox.put(events)
@@ -52,7 +62,7 @@ class Client:
         try:
             while True:
                 self._take(await self._websocket.receive_text())
-        except (WebSocketDisconnect, KeyError):  # it has gone, or sends what is no text
+        except (WebSocketDisconnect, KeyError, RuntimeError):  # it has gone, sends no text, or we have closed
             pass
         finally:
             sending.cancel()
@@ -80,6 +90,9 @@ class Client:
                 batch, events = self._outbox.take()
                 message = json.dumps({"batch": batch, "events": events}, separators=(",", ":"))
                 await self._websocket.send_text(message)
+            if self._is_over and self._outbox.is_empty:
+                await self._websocket.close(INTERNAL_ERROR)
+                return
 
 
 def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> ASGIApp:
@@ -95,7 +108,8 @@ def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> A
     async def stream(websocket: WebSocket) -> None:
         nonlocal clients
         if not guard.knows_token(websocket.query_params.get("token", "")):
-            await websocket.close(1008)
+            await websocket.accept()  # a browser tells a page the code only of what was accepted
+            await websocket.close(POLICY_VIOLATION)
             return
         await websocket.accept()
         if clients >= MOST_CLIENTS:

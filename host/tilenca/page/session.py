@@ -3,16 +3,18 @@
 A source is what stands behind the page: anything that tells of tiles in the stream's events.
 """
 
+import math
 import queue
 import threading
 import time
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Protocol
 
 from tilenca.base.errors import TilencaError
 from tilenca.protocol.stream import StreamEvent, refused_event
-from tilenca.protocol.stream_commands import StreamCommand
+from tilenca.protocol.stream_commands import Step, StreamCommand
 
 TICK_S = 1 / 60
 # How long an idle run waits for a command before it looks whether it is to end.
@@ -20,6 +22,9 @@ IDLE_S = 0.25
 # A run that was held up does not catch up with more than this.
 MOST_TICK_S = 0.1
 MOST_COMMANDS = 256
+# Emulated; a longer step is made of several, so that a run can end in between.
+STEP_SLICE_S = 0.05
+LEAST_STEP_S = 1e-6  # less is a rounding error
 MOST_REFUSAL = 300  # characters
 
 
@@ -55,15 +60,19 @@ class Session:
     """Runs a source until it is closed."""
 
     def __init__(
-        self, make_source: Callable[[], Source], deliver: Callable[[list[StreamEvent]], None]
+        self,
+        make_source: Callable[[], Source],
+        deliver: Callable[[list[StreamEvent]], None],
+        tell_end: Callable[[], None] = lambda: None,
     ) -> None:
         """Starts the thread.
 
         Args:
             make_source: called in the thread.
             deliver: takes events, in the thread.
+            tell_end: called in the thread, last of all: no event comes after it.
         """
-        self._make_source, self._deliver = make_source, deliver
+        self._make_source, self._deliver, self._tell_end = make_source, deliver, tell_end
         self._commands: queue.Queue[StreamCommand | None] = queue.Queue(MOST_COMMANDS)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="tilenca-page-run", daemon=True)
@@ -77,24 +86,33 @@ class Session:
             return False
         return True
 
-    def close(self, wait_s: float = 2.0) -> None:
-        """Ends the run."""
+    def close(self) -> None:
+        """Ends the run, and waits for its thread; commands that it has not begun are dropped."""
         self._ended.set()
         with suppress(queue.Full):
             self._commands.put_nowait(None)  # so that an idle one looks up
-        self._thread.join(wait_s)
+        self._thread.join()
 
     def _run(self) -> None:
         try:
-            source = self._make_source()
+            self._serve()
         except TilencaError as error:
             self._deliver([_refusal(error)])
-            return
+        except Exception as error:  # a mistake of ours: the person at the page must not wait for ever
+            traceback.print_exc()
+            self._deliver([_refusal(error, f"the run broke off: {type(error).__name__}: ")])
+        finally:
+            self._tell_end()
+
+    def _serve(self) -> None:
+        source = self._make_source()
         try:
             self._deliver(source.begin())
             before_s = time.monotonic()
             while not self._ended.is_set():
                 self._obey(source, IDLE_S if source.is_idle else before_s + TICK_S - time.monotonic())
+                if self._ended.is_set():
+                    return
                 now_s = time.monotonic()
                 try:
                     events = source.advance(min(now_s - before_s, MOST_TICK_S))
@@ -108,7 +126,7 @@ class Session:
 
     def _obey(self, source: Source, wait_s: float) -> None:
         """Takes the commands that have come; waits for the first one."""
-        while True:
+        while not self._ended.is_set():
             try:
                 command = (
                     self._commands.get(timeout=max(wait_s, 0.0))
@@ -121,10 +139,22 @@ class Session:
             if command is None:
                 return
             try:
-                source.take(command)
+                self._take(source, command)
             except TilencaError as error:
                 self._deliver([_refusal(error)])
 
+    def _take(self, source: Source, command: StreamCommand) -> None:
+        if not isinstance(command, Step):
+            source.take(command)
+            return
+        whole = math.floor(command.seconds / STEP_SLICE_S * (1 + 1e-9))
+        rest_s = command.seconds - whole * STEP_SLICE_S
+        slices = [STEP_SLICE_S] * whole + ([rest_s] if rest_s > LEAST_STEP_S or not whole else [])
+        for seconds in slices:
+            if self._ended.is_set():
+                return
+            source.take(Step(seconds))
 
-def _refusal(error: TilencaError) -> StreamEvent:
-    return refused_event(0.0, str(error)[:MOST_REFUSAL])
+
+def _refusal(error: Exception, before: str = "") -> StreamEvent:
+    return refused_event(0.0, f"{before}{error}"[:MOST_REFUSAL])
