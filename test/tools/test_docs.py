@@ -119,10 +119,10 @@ def test_good_links_are_let_be(tmp_path: Path) -> None:
 def test_code_that_a_reader_types_has_a_button_that_copies_it_and_output_has_none() -> None:
     configuration = (paths.ROOT / "tools" / "docs" / "conf.py").read_text(encoding="utf-8")
     assert '"sphinx_copybutton",' in configuration
-    [selector] = re.findall(r'^copybutton_selector = "(.*)"$', configuration, re.MULTILINE)
+    [typed] = re.findall(r"^TYPED = \((.*)\)$", configuration, re.MULTILINE)
     pages = [paths.ROOT / "README.md", *(paths.ROOT / "docs").rglob("*.md")]
     fences = [
         line for page in pages for line in page.read_text(encoding="utf-8").splitlines() if line[:3] == "```"
     ]
     languages = {fence[3:] for fence in fences if fence[3:].isalpha()}
-    assert set(re.findall(r"\.highlight-(\w+)", selector)) == languages - {"text"}
+    assert set(re.findall(r'"(\w+)"', typed)) == languages - {"text"}

@@ -50,7 +50,8 @@ html_copy_source = False
 html_show_copyright = False
 
 # A button on code that a reader types or keeps, not on what a program prints.
-copybutton_selector = ":is(.highlight-sh, .highlight-python, .highlight-toml, .highlight-js) pre"
+TYPED = ("bash", "dockerfile", "js", "python", "sh", "toml", "yaml")
+copybutton_selector = f":is({', '.join(f'.highlight-{language}' for language in TYPED)}) pre"
 
 highlight_language = "text"  # of a block that names no language
 
