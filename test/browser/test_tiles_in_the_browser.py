@@ -194,11 +194,11 @@ def test_the_slider_shows_the_losses_of_a_link(visit: Visit, server: PageServer)
     assert visit.page.locator("#noise").input_value() == "40"
 
 
-def test_one_page_too_many_is_told_for_as_long_as_it_waits(browser: Browser, server: PageServer) -> None:
-    others = [WebSocketClient(server.address) for _ in range(MOST_CLIENTS)]
-    for other in others:
-        other.watch("stream")
-    with new_visit(browser) as visit:
+def test_one_page_too_many_is_told_for_as_long_as_it_waits(browser: Browser, firmware: Path) -> None:
+    with page_server(firmware) as server, new_visit(browser) as visit:
+        others = [WebSocketClient(server.address) for _ in range(MOST_CLIENTS)]
+        for other in others:
+            other.watch("stream")
         visit.page.goto(server.url)
         notice = visit.page.locator("#notice", has_text="close one of them; trying again in 2 s")
         notice.wait_for()  # the waits grow
