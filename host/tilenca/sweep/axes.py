@@ -8,7 +8,7 @@ drawings=drawn,damaged      words
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
 from itertools import product
 
@@ -50,7 +50,7 @@ class AxisKind:
     most: float | None = None
     whole: bool = False
     words: tuple[str, ...] = ()
-    read: Callable[[str], object] = str
+    read: Callable[[str], object] = field(default_factory=lambda: str)
 
 
 def _both(fast: Value, emulator: Value) -> dict[str, Value]:
