@@ -1,18 +1,16 @@
 """Connecting to a cluster: what is refused, and in which words."""
 
 import json
-import logging
 import shutil
 import sys
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 
-import distributed
 import pytest
 
 from support.jobs import missing, pid
-from support.machines import machines
+from support.machines import in_this_process, machines
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.cluster.client import Cluster, open_cluster
@@ -28,16 +26,8 @@ WITHOUT_CHECKOUT = (
 @pytest.fixture(scope="module")
 def here() -> Iterator[str]:
     """The address of a scheduler in this process, with one worker."""
-    with distributed.LocalCluster(
-        n_workers=1,
-        threads_per_worker=1,
-        processes=False,
-        protocol="tcp://",
-        host="127.0.0.1",
-        dashboard_address=None,
-        silence_logs=logging.CRITICAL,
-    ) as cluster:
-        yield str(cluster.scheduler_address)
+    with in_this_process(workers=1) as address:
+        yield address
 
 
 def test_it_knows_the_workers_of_a_scheduler(here: str) -> None:

@@ -1,16 +1,14 @@
 """Many tasks on workers that fail, vanish and come."""
 
-import logging
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import distributed
 import pytest
 
 from support.jobs import defect, full, other_version, refuse, times
-from support.machines import machines
+from support.machines import in_this_process, machines
 from tilenca.base.errors import BuildError, TilencaError, UsageError
 from tilenca.cluster import tasks as tasks_module
 from tilenca.cluster.client import Cluster, open_cluster
@@ -21,18 +19,7 @@ from tilenca.cluster.tasks import run_tasks
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Cluster]:
     """Two workers in this process."""
-    with (
-        distributed.LocalCluster(
-            n_workers=2,
-            threads_per_worker=1,
-            processes=False,
-            protocol="tcp://",
-            host="127.0.0.1",
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-        ) as local,
-        open_cluster(str(local.scheduler_address), 1) as ours,
-    ):
+    with in_this_process(workers=2) as address, open_cluster(address, 1) as ours:
         yield ours
 
 

@@ -1,7 +1,6 @@
 """`tilenca sweep`: from the command line to the table."""
 
 import json
-import logging
 import os
 import shlex
 import signal
@@ -11,9 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import distributed
 import pytest
 
+from support.machines import in_this_process
 from support.sweeps import one_shape
 from tilenca import cli
 from tilenca.base import paths
@@ -31,16 +30,8 @@ needs_elf = pytest.mark.skipif(
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
     """The address of a scheduler in this process, with one worker."""
-    with distributed.LocalCluster(
-        n_workers=1,
-        threads_per_worker=1,
-        processes=False,
-        protocol="tcp://",
-        host="127.0.0.1",
-        dashboard_address=None,
-        silence_logs=logging.CRITICAL,
-    ) as cluster:
-        yield str(cluster.scheduler_address)
+    with in_this_process(workers=1) as address:
+        yield address
 
 
 def sweep(capsys: pytest.CaptureFixture[str], *words: str) -> Any:

@@ -1,5 +1,6 @@
 """A real Dask scheduler and real worker processes, which a test may kill and start again."""
 
+import logging
 import os
 import signal
 import socket
@@ -8,6 +9,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+import distributed
 
 ENDS_WITHIN_S = 20
 TESTS = Path(__file__).resolve().parents[1]  # so that workers find `support`
@@ -85,3 +88,18 @@ def machines(folder: Path, workers: int) -> Iterator[Machines]:
     finally:
         for process in (started.scheduler, *started.workers):
             started.kill(process)
+
+
+@contextmanager
+def in_this_process(workers: int) -> Iterator[str]:
+    """The address of a scheduler in this process, with so many workers of one thread."""
+    with distributed.LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=False,
+        protocol="tcp://",
+        host="127.0.0.1",
+        dashboard_address=None,
+        silence_logs=logging.CRITICAL,
+    ) as cluster:
+        yield str(cluster.scheduler_address)

@@ -27,7 +27,7 @@ TIMES = 2  # as many rows and columns as drawn, for dead tiles
 def agreeing_cases(task: Drawings, first: Sequence[Shape], aimed: Sizes, seed: int) -> Iterator[Case]:
     """Any connected drawings, and drawings of a class with one tile too many, at one or two sizes."""
     random = np.random.default_rng(seed)
-    for size in (None, *(size for size in (LARGER,) if size in aimed.trained)):
+    for size in (None, LARGER) if LARGER in aimed.trained else (None,):
         shapes = list(first) if size is None else at_size(first, size)
         name, steps = size_name(size or task.largest), SHORT_STEPS if size is None else steps_for(size)
         rows = dict.fromkeys(_any_connected([shape.rows for shape in shapes], random))
