@@ -177,7 +177,7 @@ def test_a_full_disk_ends_training_with_one_line(
     out = tmp_path / "out"
     out.mkdir()
     # A device on which there is never room, where the checkpoint is written before it is renamed.
-    (out / "checkpoint-5.part").symlink_to("/dev/full")
+    (out / "checkpoint-5.pt.part").symlink_to("/dev/full")
     assert train(two_shapes, out, "--iterations", "4") == 1
     said = capsys.readouterr()
     assert said.out == ""
