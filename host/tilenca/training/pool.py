@@ -22,6 +22,7 @@ States = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
 UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
+WENT_WRONG = 0.3  # most of an undisturbed batch that are grids which were wrong when they were last seen
 SAME_SCALE = 2, 3  # rows and columns by which drawings may differ that are rebuilt into each other
 LASTING = 0.5  # the share of rebuilt grids whose new drawing is of the files, or a stretched one
 PATIENCE = 1000  # ticks for which a grid that does not agree is left alone
@@ -156,9 +157,13 @@ class Pools:
         return taken, resets, disturbed
 
     def _take_undisturbed(self) -> Numbers:
-        """Draws grids of the undisturbed pool; those at the end of their lifetime start anew."""
+        """Draws grids of the undisturbed pool, some of those that went wrong; old ones start anew."""
         recipe = self.recipe
-        taken = self.random.choice(max(recipe.undisturbed_pool, 1), recipe.undisturbed_batch, replace=False)
+        every = self.random.permutation(recipe.undisturbed_pool)
+        wrong = every[self.undisturbed.wrong[every]][: round(WENT_WRONG * recipe.undisturbed_batch)]
+        others = np.setdiff1d(every, wrong, assume_unique=True)
+        rest = self.random.choice(others, recipe.undisturbed_batch - len(wrong), replace=False)
+        taken = np.concatenate((wrong, rest))
         for number in taken:
             if self.undisturbed.age[number] >= self.undisturbed.lifetime[number]:
                 self.reset(self.undisturbed, int(number))
@@ -184,6 +189,8 @@ class Pools:
         # A grid that was disturbed a moment ago may be wrong; converged grids must be right.
         converged = self.perturbed.age[taken.perturbed] >= CONVERGED_AFTER
         self.perturbed.wrong[taken.perturbed] = converged & ~right[:count]
+        old = self.undisturbed.age[taken.undisturbed] >= CONVERGED_AFTER
+        self.undisturbed.wrong[taken.undisturbed] = old & ~right[count:]
         seen = self.curriculum.failing[self.perturbed.drawing[taken.perturbed][converged]]
         records, record, times = np.unique(seen, return_inverse=True, return_counts=True)
         failed = np.bincount(record, ~right[:count][converged], len(records)) / times
@@ -280,6 +287,7 @@ class Pools:
         pool.states[number] = 0.0
         pool.states[number, : self.drawings.sizes[drawing], 0] = 1.0
         pool.age[number] = 0
+        pool.wrong[number] = False
         pool.lifetime[number] = self.random.integers(*self.recipe.undisturbed_ticks)
 
     def switch(self, pool: Pool, number: int) -> None:

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from tilenca.model.file import Model
 from tilenca.protocol.constants import STATE_MAX
-from tilenca.shapes.batch import Drawings
+from tilenca.shapes.batch import NO_CLASS, Drawings
 from tilenca.simulator.conditions import Conditions, Fault
 from tilenca.simulator.engine import SEED_STATE, FastEngine
-from tilenca.simulator.simulator import Simulator
+from tilenca.simulator.simulator import MIXED, Simulator
 from tilenca.simulator.transitions import Order, Way, rebuilt
 from tilenca.training.pool import Pool, Pools, States
 
@@ -41,11 +41,11 @@ def as_integers(states: States) -> NDArray[np.int16]:
 def refresh_undisturbed(
     model: Model, pool: Pool, drawings: Drawings, steps: tuple[int, int], random: np.random.Generator
 ) -> None:
-    """Runs some grids of a pool for some steps on tiles' clocks, without losses.
+    """Runs some grids of a pool for some steps on tiles' clocks, without losses, and notes which are wrong.
 
     Args:
         model: the network.
-        pool: the grids; states and ages are changed.
+        pool: the grids; states, ages and which ones are wrong are changed.
         drawings: the drawings that `pool.drawing` numbers.
         steps: least and most; the logarithm of the number is uniform between them.
         random: the only source of chance.
@@ -58,6 +58,8 @@ def refresh_undisturbed(
     states = as_integers(pool.states[grid, batch.place])
     simulator = Simulator(FastEngine(model), drawings, pool.drawing[some], CLOCKS, random, states)
     simulator.run(count)
+    classes, answers = drawings.classes[pool.drawing[some]], simulator.answers()
+    pool.wrong[some] = np.where(classes == NO_CLASS, answers == MIXED, answers != classes)
     pool.states[grid, batch.place] = simulator.states / np.float32(SEED_STATE)
     pool.age[some] += count * TICKS_PER_STEP
 

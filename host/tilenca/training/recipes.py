@@ -43,6 +43,7 @@ class Recipe:
         refresh_every: iterations after which the undisturbed grids run long rollouts with the EMA weights; 0:
             never.
         refresh_steps: least and most steps of those rollouts.
+        mine_every: iterations after which hard examples are mined and drawings renewed; 0: never.
         trials: drawings of the files to try with each kind of beginning, to mine hard examples: those that do
             not agree go into the perturbed pool.
         stability_penalty: weight of the squared change of converged states over one iteration.
@@ -59,7 +60,7 @@ class Recipe:
             the stale message before it.
         max_stale: largest share of messages that all neighbours miss.
         library: drawings that are drawn by chance and renewed, of all kinds together.
-        renewed: share of them that is renewed whenever the pools are refreshed.
+        renewed: share of them that is renewed whenever hard examples are mined.
         varied: share of variants of the classes, where the shape file has `[vary]`.
         unlabelled: share of drawings whose class is in doubt: their tiles must agree on any answer.
         stretch: largest factor by which drawings are stretched, where the shape file has sizes; 1: not.
@@ -96,6 +97,7 @@ class Recipe:
     undisturbed_ticks: tuple[int, int] = (200, 4000)
     refresh_every: int = 0
     refresh_steps: tuple[int, int] = (50, 3000)
+    mine_every: int = 0
     trials: int = 300
     stability_penalty: float = 0.0
     loss_limit: float = 0.0
@@ -145,6 +147,7 @@ FULL = Recipe(
     undisturbed_batch=12,
     undisturbed_ticks=(200, 20_000),
     refresh_every=500,
+    mine_every=500,
     stability_penalty=0.05,
     fire_rate=(0.3, 0.9),
     clocks=0.5,
@@ -169,17 +172,21 @@ RECIPES: dict[str, Recipe] = {
     # reaches and what it costs.
     "forms": replace(
         FULL,
-        iterations=80_000,
+        iterations=72_000,
+        batch=36,
         undisturbed_pool=384,
-        stretched=0.14,
-        varied=0.28,
-        damaged=0.18,
-        unknown=0.24,
+        undisturbed_batch=14,
+        stretched=0.12,
+        varied=0.33,
+        damaged=0.15,
+        unknown=0.22,
         unlabelled=0.04,
         ramp=(0.02, 0.15),
         loss_limit=1.0,
         failure_weighting=0.3,
-        refresh_every=1000,
+        refresh_every=250,
+        mine_every=1000,
+        trials=200,
         check_every=20_000,
     ),
     # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
@@ -188,6 +195,9 @@ RECIPES: dict[str, Recipe] = {
         hidden=112,
         iterations=60_000,
         undisturbed_pool=384,
+        mine_every=1000,
+        loss_limit=1.0,
+        failure_weighting=0.3,
         stretch=1.0,
         stretched=0.0,
         damaged=0.06,
@@ -232,6 +242,7 @@ RECIPES: dict[str, Recipe] = {
         undisturbed_pool=8,
         undisturbed_batch=2,
         refresh_every=15,
+        mine_every=15,
         refresh_steps=(5, 20),
         trials=5,
         library=60,

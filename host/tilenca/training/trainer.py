@@ -157,8 +157,7 @@ class Trainer:
         right = _all_right(scores_of(end, goal.classes), target, batch)
         self.pools.give_back(taken, end.detach().cpu().numpy(), lengths, right)
         self.iteration += 1
-        if recipe.refresh_every and self.iteration % recipe.refresh_every == 0:
-            self._refresh_pools()
+        self._refresh_pools()
         report = StepReport(self.iteration, loss.item(), float(right.mean()))
         self._since.append((report.loss, report.agreement))
         if self.iteration % max(1, min(HISTORY_EVERY, recipe.iterations // HISTORY_ROWS)) == 0:
@@ -197,12 +196,18 @@ class Trainer:
                 self.ema[name].lerp_(value, 1 - keep)
 
     def _refresh_pools(self) -> None:
+        """Long rollouts, hard examples and new drawings, now and then."""
+        recipe, pools = self.config.recipe, self.pools
+        refresh, mine = (n and self.iteration % n == 0 for n in (recipe.refresh_every, recipe.mine_every))
+        if not (refresh or mine):
+            return
         model, _ = model_of(self.now(), {})
-        recipe = self.config.recipe
-        pools = self.pools
-        pools.renew()
-        refresh_undisturbed(model, pools.undisturbed, pools.drawings, recipe.refresh_steps, self.random)
-        mine_hard_examples(model, pools, recipe.trials, self.random)
+        if mine:
+            pools.renew()
+        if refresh:
+            refresh_undisturbed(model, pools.undisturbed, pools.drawings, recipe.refresh_steps, self.random)
+        if mine:
+            mine_hard_examples(model, pools, recipe.trials, self.random)
 
     def now(self) -> Trained:
         """The result so far."""
