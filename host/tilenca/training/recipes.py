@@ -193,8 +193,11 @@ RECIPES: dict[str, Recipe] = {
     "many": replace(
         FULL,
         hidden=112,
-        iterations=60_000,
+        iterations=36_000,
+        batch=28,
+        ticks=(10, 24),
         undisturbed_pool=384,
+        undisturbed_batch=8,
         mine_every=1000,
         loss_limit=1.0,
         failure_weighting=0.3,
