@@ -167,6 +167,10 @@ def _report(
         "cells_right": round(float(trajectory.right[-1].mean()), 6),
         "total_agreement": round(float(trajectory.agreed[-1].mean()), 6),
         "steps_to_agreement": convergence_times(trajectory.converged_at),
+        "by_step": {
+            "cells_right": np.round(trajectory.right.mean(axis=1, dtype=np.float64), 6).tolist(),
+            "total_agreement": np.round(trajectory.agreed.mean(axis=1), 6).tolist(),
+        },
     }
     return {
         "shape": name,

@@ -170,7 +170,7 @@ def _measured(
         metadata: of the model.
         out: the model's folder.
     """
-    from tilenca.evaluation.evaluator import validate
+    from tilenca.evaluation.validation import validate
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.results import Result
     from tilenca.training.trainer import model_of
