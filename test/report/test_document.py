@@ -19,8 +19,10 @@ AGAIN = "tilenca sweep --axis loss=0.1"
 ROW = Row("edges.loss.0", "messages lost: loss 0.1", 0.5, SHARE, 0.4, 0.6, 100, 1, AGAIN)
 FACTS = Facts("tilenca report --out x", "1", "D968", "2026-01-01", "a machine", quick=True)
 EXPERIMENTS = [
-    Experiment("edges.loss", EDGES, "messages lost", (), "sweep", (1, 1), figure="messages lost"),
-    Experiment("paper.curve", PAPER, "'4'", (), "curve", (1, 1), figure="update by update"),
+    Experiment(
+        "edges.loss", EDGES, "messages lost", (), "sweep", (1, 1), figure="messages lost", axis="share"
+    ),
+    Experiment("paper.curve", PAPER, "'4'", (), "curve", (1, 1), figure="update by update", axis="updates"),
     Experiment("gap.fast", GAP, "fast", (), "evaluation", (1, 1)),
     Experiment("gap.tiles", GAP, "<tiles>", (), "evaluation", (1, 1)),
 ]
@@ -34,7 +36,7 @@ ROWS = {
 
 def test_a_figure_has_the_rows_of_its_experiments_along_their_axis() -> None:
     first, second = figures_of(EXPERIMENTS, ROWS)
-    assert (first.section, first.title) == (EDGES, "messages lost")
+    assert (first.section, first.title, first.axis) == (EDGES, "messages lost", "share")
     assert [row.across for row in first.rows["size 5x4"]] == [0.1, 0.2]
     assert list(second.rows) == ["'4'"]
 

@@ -7,7 +7,17 @@ from typing import Any
 import pytest
 
 from tilenca import cli
-from tilenca.report.rows import SECONDS, SHARE, STEPS, read_curve, read_evaluation, read_suite, seed_of, slug
+from tilenca.report.rows import (
+    SECONDS,
+    SHARE,
+    STEPS,
+    read_curve,
+    read_emulations,
+    read_evaluation,
+    read_suite,
+    seed_of,
+    slug,
+)
 
 
 def printed(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, Any]:
@@ -49,4 +59,17 @@ def test_a_curve_has_a_row_for_every_update(capsys: pytest.CaptureFixture[str]) 
 def test_seeds_and_keys_are_read_from_words() -> None:
     assert seed_of(["emulate", "--seed", "12", "--json"]) == 12
     assert slug("20 % of the messages lost, read as zero") == "20-of-the-messages-lost-read-as-zero"
-    assert SECONDS == "s"
+
+
+@pytest.mark.usefixtures("firmware")
+@pytest.mark.parametrize("shapes", [("7",), ("7", "1")])
+def test_an_emulation_has_a_share_and_two_times(
+    shapes: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("emulate", *(word for shape in shapes for word in ("--shape", shape)), "--seed", "4")
+    right, powered, updated = read_emulations("paper.tiles", "digits", printed(capsys, *words), words)
+    assert (right.value, right.runs, right.unit) == (1.0, len(shapes), SHARE)
+    assert powered.unit == updated.unit == SECONDS
+    assert powered.value is not None
+    assert updated.value is not None
+    assert powered.value > updated.value

@@ -16,7 +16,7 @@ def test_a_figure_is_an_element_of_svg_the_same_every_time() -> None:
         "size 5x4": [row(0, 1.0, 0.9, 1.0), row(0.5, 0.2, 0.1, 0.3)],
         "curve": [row(0, 0.3), row(1, None)],
     }
-    figure = Figure("edges", "messages lost", lines)
+    figure = Figure("edges", "messages lost", "share", lines)
     svg = draw_figure(figure)
     assert svg == draw_figure(figure)
     root = ElementTree.fromstring(svg)

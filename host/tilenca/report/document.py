@@ -19,12 +19,14 @@ class Figure:
     Attributes:
         section: one of `TITLES`.
         title: what it shows.
+        axis: what it shows that along.
         rows: by the name of each line.
         svg: the picture; empty until it is drawn.
     """
 
     section: str
     title: str
+    axis: str
     rows: Mapping[str, Sequence[Row]]
     svg: str = ""
 
@@ -52,19 +54,21 @@ class Facts:
 
 def figures_of(experiments: Sequence[Experiment], rows: Mapping[str, Sequence[Row]]) -> list[Figure]:
     """The figures: the rows along an axis of experiments with the same figure."""
-    figures: dict[str, tuple[str, dict[str, list[Row]]]] = {}
+    first: dict[str, Experiment] = {}
+    lines: dict[str, dict[str, list[Row]]] = {}
     for experiment in experiments:
         if experiment.figure:
-            _, lines = figures.setdefault(experiment.figure, (experiment.section, {}))
+            first.setdefault(experiment.figure, experiment)
             for row in rows[experiment.key]:
-                lines.setdefault(row.line, []).append(row)
+                lines.setdefault(experiment.figure, {}).setdefault(row.line, []).append(row)
     return [
         Figure(
-            section,
+            first[title].section,
             title,
-            {name: sorted(mine, key=lambda row: row.across or 0) for name, mine in lines.items()},
+            first[title].axis,
+            {name: sorted(mine, key=lambda row: row.across or 0) for name, mine in of_title.items()},
         )
-        for title, (section, lines) in figures.items()
+        for title, of_title in lines.items()
     ]
 
 

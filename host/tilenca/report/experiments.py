@@ -46,6 +46,7 @@ class Experiment:
         reader: one of `tilenca.report.rows.READERS`.
         runs: of each drawing, in the full report and in the quick one; the quick one leaves out those with 0.
         figure: the figure that draws its rows; none: they are in the table only.
+        axis: what that figure draws them along.
     """
 
     key: str
@@ -55,6 +56,7 @@ class Experiment:
     reader: str
     runs: tuple[int, int]
     figure: str = ""
+    axis: str = ""
 
     def arguments(self, quick: bool) -> Words:
         """The words, with the number of runs."""
@@ -109,7 +111,8 @@ EXPERIMENTS = (
             _with_seed("simulate", "--shape", shape, "--schedule", "listing", "--steps", "30"),
             "curve",
             (1000, 100),
-            figure="Tiles that are right, update by update",
+            figure="Share of the tiles that are right, update by update",
+            axis="updates",
         )
         for shape in FIGURE_SHAPES
     ),
@@ -155,14 +158,15 @@ EXPERIMENTS = (
             _sweep(axis, "--axis", "size=drawn,12x10"),
             "sweep",
             (100, quick),
-            figure=what,
+            figure=f"Share of the runs with all tiles right: {what}",
+            axis=unit,
         )
-        for axis, what, quick in (
-            ("loss=0:0.9:0.1", "messages lost, the last one held", 4),
-            ("dead=0:0.3:0.03", "tiles dead from the beginning", 4),
-            ("flip=0,0.0001,0.0003,0.001,0.003,0.01", "bits inverted on the cables", 0),
-            ("boot-spread=0:4:0.5", "tiles switched on within so many seconds", 0),
-            ("ppm=0:40000:5000", "clocks off by up to so many millionths", 0),
+        for axis, what, unit, quick in (
+            ("loss=0:0.9:0.1", "messages lost, the last one held", "share of the messages", 4),
+            ("dead=0:0.3:0.03", "tiles dead from the beginning", "share of the tiles", 4),
+            ("flip=0,0.0001,0.0003,0.001,0.003,0.01", "bits inverted on the cables", "share of the bits", 0),
+            ("boot-spread=0:4:0.5", "tiles switched on within some seconds", "seconds", 0),
+            ("ppm=0:40000:5000", "clocks that differ", "millionths, either way", 0),
         )
     ),
     Experiment(

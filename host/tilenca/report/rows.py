@@ -91,7 +91,7 @@ def read_suite(key: str, what: str, result: dict[str, Any], words: Words) -> lis
 
 def read_emulations(key: str, what: str, result: dict[str, Any], words: Words) -> list[Row]:
     """The rows of `tilenca emulate`: all tiles right, and the seconds until they were."""
-    shapes, seed = result.get("shapes", [result]), seed_of(words)
+    shapes, seed = result.get("runs", [result]), seed_of(words)
     right = sum(shape["all_right"] for shape in shapes) / len(shapes)
     first = share(f"{key}.right", f"{what}: all tiles right", right, len(shapes), seed, words)
     rows = [first]

@@ -15,6 +15,7 @@ from matplotlib.axes import Axes  # isort: skip
 from matplotlib.figure import Figure as Canvas  # isort: skip
 
 SIZE_IN = (4.6, 3.1)
+MOST_EVEN = 50  # times as far as the first value, up to which an axis is linear
 
 
 def draw_figure(figure: Figure) -> str:
@@ -23,8 +24,7 @@ def draw_figure(figure: Figure) -> str:
         canvas = Canvas(figsize=SIZE_IN, layout="constrained")
         axes = canvas.add_subplot()
         _draw(axes, figure.rows)
-        axes.set_xlabel(figure.title)
-        axes.set_ylabel("share")
+        axes.set_xlabel(figure.axis)
         buffer = io.StringIO()
         canvas.savefig(buffer, format="svg", metadata={"Date": None})
     return re.sub(r"^.*?(?=<svg)", "", buffer.getvalue(), count=1, flags=re.DOTALL).strip()
@@ -39,5 +39,8 @@ def _draw(axes: Axes, lines: Mapping[str, Sequence[Row]]) -> None:
         )
         axes.plot(across, value, dash, color=colour, label=name)
         axes.fill_between(across, low, high, color=colour, alpha=0.15, linewidth=0)
+    places = sorted({row.across for rows in lines.values() for row in rows if row.across})
+    if places[-1] > MOST_EVEN * places[0]:
+        axes.set_xscale("symlog", linthresh=places[0])
     axes.set_ylim(-0.03, 1.03)
     axes.legend()
