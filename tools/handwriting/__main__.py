@@ -13,6 +13,7 @@ import numpy as np
 
 from handwriting.sources import SOURCES, Ink, Source
 from tilenca.base.errors import UsageError
+from tilenca.shapes.file import shape_table
 from tilenca.shapes.image import drawing_of
 from tilenca.shapes.stretch import Rows
 
@@ -51,10 +52,8 @@ def copies(ink: Ink, source: Source, random: np.random.Generator) -> Iterator[Ro
 
 def shape_file(title: str, drawings: dict[Rows, str]) -> str:
     """The text of a shape file."""
-    parts = [f"# {title}\n\nvary = false\n"]
-    for rows, label in drawings.items():
-        parts.append('\n[[shape]]\nlabel = "{}"\ngrid = """\n{}\n"""\n'.format(label, "\n".join(rows)))
-    return "".join(parts)
+    tables = (shape_table(label, rows) for rows, label in drawings.items())
+    return "\n".join((f"# {title}\n\nvary = false\n", *tables))
 
 
 def split(source: Source, random: np.random.Generator) -> tuple[dict[Rows, str], dict[Rows, str]]:
