@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError
+from tilenca.base.processors import processors
 from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
 from tilenca.base.whole_file import write_whole
 from tilenca.commands.arguments import add_cluster_arguments, existing_image
 from tilenca.model.file import load_model
-from tilenca.simulator.simulator import processors
 from tilenca.views.progress import show_progress
 
 if TYPE_CHECKING:

@@ -14,6 +14,7 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.processors import processors
 from tilenca.commands.arguments import (
     add_condition_arguments,
     add_model_argument,
@@ -31,7 +32,7 @@ from tilenca.shapes.glyphs import DARK_LOOK, look_of_class
 from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.rollout_library import DARK
-from tilenca.simulator.simulator import Simulator, processors
+from tilenca.simulator.simulator import Simulator
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.table import table
 from tilenca.views.tiles import Picture, beside
