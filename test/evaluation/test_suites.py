@@ -102,3 +102,18 @@ def test_of_a_file_with_very_many_drawings_some_are_asked_by_the_seed(tmp_path: 
     assert len(set(first)) == MOST_DRAWN
     assert [shape.label for shape in suites[0].drawn[1].drawings.shapes] == ["7"]
     assert suites[0].dead == ()
+
+
+def test_files_that_are_never_trained_on_measure_the_model(tmp_path: Path) -> None:
+    (tmp_path / "new.toml").write_text("vary = false\n" + shape_table("7", ("#" * 8, *["." * 7 + "#"] * 8)))
+    first = shape_table("7", ("###", "..#")) + shape_table("1", ("#", "#", "#"))
+    (tmp_path / "mine.toml").write_text('vary = false\n[sizes]\nmeasured = ["new.toml"]\n' + first)
+    for stretch in (1.0, 10.0):
+        task, sizes = load_training_task([tmp_path / "mine.toml"], stretch, 20)
+        assert [source["file"] for source in task.sources] == ["mine.toml"], "not among those to train on"
+        (case,) = (
+            case
+            for case in make_suite(task, sizes, task.labels, Aims(stretch), 1).sizes
+            if case.name == "new.toml, never trained on"
+        )
+        assert (case.held_out, case.steps, len(case.drawings)) == (True, 100, 1)

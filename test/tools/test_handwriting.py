@@ -51,6 +51,7 @@ def test_the_files_are_valid_and_share_no_drawing(monkeypatch: pytest.MonkeyPatc
     trained, last = (load_task(tmp_path / name) for name in ("mnist.toml", "mnist-held-out.toml"))
     assert trained.labels == last.labels == ("1", "7")
     assert trained.vary is None
+    assert [path.name for path in trained.sizes.measured] == ["mnist-held-out.toml"]
     assert len(trained.shapes) > len(last.shapes)
     assert not {shape.rows for shape in trained.shapes} & {shape.rows for shape in last.shapes}
     assert max(len(shape.rows) for shape in trained.shapes) <= 14

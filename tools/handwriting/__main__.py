@@ -50,10 +50,10 @@ def copies(ink: Ink, source: Source, random: np.random.Generator) -> Iterator[Ro
         yield drawing_of(warped(ink, random), source.size, random.uniform(*source.inks))
 
 
-def shape_file(title: str, drawings: dict[Rows, str]) -> str:
-    """The text of a shape file."""
+def shape_file(title: str, drawings: dict[Rows, str], sizes: str = "") -> str:
+    """The text of a shape file, with a table of sizes if it has one."""
     tables = (shape_table(label, rows) for rows, label in drawings.items())
-    return "\n".join((f"# {title}\n\nvary = false\n", *tables))
+    return "\n".join((f"# {title}\n\nvary = false\n{sizes}", *tables))
 
 
 def split(source: Source, random: np.random.Generator) -> tuple[dict[Rows, str], dict[Rows, str]]:
@@ -85,11 +85,11 @@ def main() -> int:
     except UsageError as error:
         parser.error(str(error))
     args.out.mkdir(parents=True, exist_ok=True)
-    for name, drawings, what in (
-        (args.source, trained, "and copies of them, warped"),
-        (f"{args.source}-held-out", last, "never trained on"),
-    ):
-        (args.out / f"{name}.toml").write_text(shape_file(f"{source.title}, {what}.", drawings))
+    name, file = args.source, f"{args.source}-held-out.toml"
+    sizes = f'\n[sizes]\nmeasured = ["{file}"]\n'
+    first = shape_file(f"{source.title}, and copies of them, warped.", trained, sizes)
+    (args.out / f"{name}.toml").write_text(first)
+    (args.out / file).write_text(shape_file(f"{source.title}, never trained on.", last))
     print(f"{len(trained)} drawings to train on, {len(last)} held out, in {args.out}", file=sys.stderr)
     return 0
 

@@ -173,9 +173,10 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     reach = 2 if aimed.more else 1.5
-    for path in sizes.drawn:
+    for path in (*sizes.drawn, *sizes.measured):
         drawings = load_drawings([path], labels=task.labels)
-        yield Case("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+        steps = SHORT_STEPS if path in sizes.drawn else steps_for(drawings.largest)
+        yield Case("held out", f"{path.name}, never trained on", drawings, steps, held_out=True, aimed=False)
     trainable = chain(task.shapes, *at_sizes(first, (*aimed.trained, *aimed.more)))
     seen = {shape.rows for shape in trainable}
     for size in new:
