@@ -18,7 +18,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
 
     Args:
         model: the model.
-        metrics: what `tilenca.evaluation.evaluator.validate` returned for it.
+        metrics: what `tilenca.evaluation.validation.validate` returned for it.
     """
     size, metadata = model.dimensions, model.metadata
     files = ", ".join(f"`{source['file']}`" for source in metadata["sources"])

@@ -73,7 +73,7 @@ class Recipe:
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
             often each failed lately.
         check_every: iterations from one short measurement to the next; training ends early when all targets
-            hold in several of them; 0: never.
+            hold in several of them; 0: never, the last weights become the model.
         validation_runs: runs of each drawing in the final measurement.
     """
 
@@ -189,7 +189,7 @@ RECIPES: dict[str, Recipe] = {
         refresh_every=250,
         mine_every=1000,
         trials=200,
-        check_every=20_000,
+        check_every=0,
     ),
     # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
     "many": replace(
@@ -209,7 +209,7 @@ RECIPES: dict[str, Recipe] = {
         unknown=0.1,
         unlabelled=0.02,
         ramp=(0.1, 0.3),
-        check_every=20_000,
+        check_every=0,
         validation_runs=20,
     ),
     # For trying out drawings: three sizes, no damage, no unknown drawings.
