@@ -14,7 +14,7 @@ from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
 from tilenca.base.project import install_remedy
-from tilenca.base.signals import ending_like_ctrl_c
+from tilenca.base.signals import acknowledging, ending_like_ctrl_c
 from tilenca.base.stdio import check_streams, finish_streams, warn
 from tilenca.commands.arguments import Parser
 
@@ -66,7 +66,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         check_streams()
         try:
-            with ending_like_ctrl_c():
+            with ending_like_ctrl_c(), acknowledging():
                 status = _run(list(sys.argv[1:] if argv is None else argv))
         finally:
             finish_streams()

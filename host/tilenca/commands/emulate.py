@@ -27,12 +27,11 @@ from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.fleet.recording import Recorder
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
-from tilenca.shapes.file import Shape, Task, load_task
+from tilenca.shapes.file import Shape, Task, load_task, too_large
 from tilenca.shapes.sizes import Size, size_name
 from tilenca.views.lag import show_lag
 
 ALL = "all"
-MAX_TILES = 255  # a tile's number is one byte
 DEFAULT_UPDATES = 30
 NO_BOOTLOADER = "none"
 # A UART that is off by a twentieth understands nothing; twice that is far enough to see it.
@@ -232,9 +231,6 @@ def _chosen(task: Task, names: Sequence[str], wanted: Size | None) -> list[Shape
             raise UsageError(
                 f"--size {size_name(wanted)}: no shape can be drawn that small; try a larger one"
             )
-    for shape in chosen:
-        if len(shape.cells) > MAX_TILES:
-            raise UsageError(
-                f"{task.path}: shape '{shape.name}' has {len(shape.cells)} tiles; at most {MAX_TILES}"
-            )
+    if (remedy := too_large(chosen)) is not None:
+        raise UsageError(f"{task.path}: {remedy}")
     return chosen

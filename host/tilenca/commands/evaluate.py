@@ -28,6 +28,7 @@ from tilenca.evaluation.suites import make_suite, recorded_aims
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
+from tilenca.shapes.file import too_large
 from tilenca.shapes.sizes import Size, size_name
 from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import Engine, FastEngine
@@ -180,6 +181,8 @@ def _emulate(
     """Runs the firmware image, one emulation for each entry of `chosen`."""
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
+    if (remedy := too_large(drawings.shapes)) is not None:
+        raise UsageError(f"--engine emulator: {remedy}")
     elf = firmware_image()
     if not elf.exists():
         raise BuildError(f"{elf}: no firmware image; {build_remedy()}")

@@ -15,7 +15,7 @@ from tilenca.base.stdio import warn
 from tilenca.commands.arguments import number, seed, size, whole
 from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
 from tilenca.shapes.batch import Drawings, load_training_task
-from tilenca.shapes.file import Shape, load_task
+from tilenca.shapes.file import Shape, Task, load_task, too_large
 from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
 from tilenca.shapes.image import cropped, drawing_of, pooled, read_image
 from tilenca.shapes.sizes import LARGEST, Size
@@ -78,9 +78,11 @@ def run(args: argparse.Namespace) -> int:
     if args.image is not None:
         return _image(args)
     task = load_task(args.shapes)
-    drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
-    variants = _variants(drawings, args.vary, args.seed, args.shapes) if args.vary else {}
-    problems = _problems(task.labels)
+    problems = _problems(task)
+    variants: dict[str, list[tuple[str, ...]]] = {}
+    if args.vary or too_large(task.shapes) is None:
+        drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
+        variants = _variants(drawings, args.vary, args.seed, args.shapes) if args.vary else {}
     if args.json:
         report: dict[str, Any] = {"shapes": [_entry(shape) for shape in task.shapes], "problems": problems}
         if args.vary:
@@ -146,15 +148,19 @@ def _entry(shape: Shape) -> dict[str, Any]:
 def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[str, list[tuple[str, ...]]]:
     """Some variants of every class, as training draws them."""
     if drawings.variants is None:
-        raise UsageError(f"{path}: says vary = false, so its classes are just its drawings; leave --vary out")
+        raise UsageError(
+            f"{path}: has areas or says vary = false, so its classes are just its drawings; leave --vary out"
+        )
     random = np.random.default_rng(number)
     return {label: drawings.variants.some(label, count, random, path) for label in drawings.labels}
 
 
-def _problems(labels: tuple[str, ...]) -> list[str]:
-    most = Dimensions(DEFAULT_CHANNELS, 1, 1).max_classes
-    if len(labels) <= most:
-        return []
-    return [
-        f"{len(labels)} classes are more than the default state holds ({most}): train with a wider --state"
-    ]
+def _problems(task: Task) -> list[str]:
+    """What keeps the drawings from being trained, a sentence each."""
+    most, classes = Dimensions(DEFAULT_CHANNELS, 1, 1).max_classes, len(task.labels)
+    problems = [] if (large := too_large(task.shapes)) is None else [large]
+    if classes > most:
+        problems.append(
+            f"{classes} classes are more than the default state holds ({most}): train with a wider --state"
+        )
+    return problems

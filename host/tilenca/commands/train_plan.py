@@ -93,6 +93,8 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
         doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
         if doubts:
             warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    if plan.recipe.varied and plan.task.variants is None:
+        warn("note: drawings with areas, or with vary = false, have no forms: they alone are trained on")
     if plan.recipe.varied == 0 and plan.varies:
         warn("note: this recipe trains on the drawings alone; only --recipe forms heeds [vary] and [forms]")
     warn(
