@@ -116,7 +116,16 @@ def run(args: argparse.Namespace) -> int:
     for path in checkpoints(args.out):
         path.unlink()
     report(args, where, result.metrics, time.monotonic() - started)
+    if not is_fit(args, result.metrics):
+        warn(f"tilenca: only {result.metrics['targets_held']} targets held: do not rely on this model")
+        return 1
     return 0
+
+
+def is_fit(args: argparse.Namespace, metrics: dict[str, Any]) -> bool:
+    """Whether at least half of the targets held; recipe smoke only tries the commands."""
+    held = [bool(row["holds"]) for row in metrics["rows"] if row["target"] is not None]
+    return bool(args.recipe == "smoke") or 2 * sum(held) >= len(held)
 
 
 def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
@@ -276,5 +285,9 @@ def report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], secon
         print(f"  and {len(missed) - MOST_MISSED} more, all in {where / 'README.md'}")
     if missed and args.recipe == "smoke":
         warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
-    shapes = f" --shapes {shlex.join(map(str, args.shapes))}"
-    warn(f"next: tilenca evaluate --model {where}{shapes}, or tilenca export --model {where} and pio run")
+    elif missed:
+        warn("note: more of them hold with more --iterations or --seeds, a wider --hidden, or --recipe full")
+    warn(
+        f"next: tilenca evaluate --model {where}, or tilenca export --model {where} --build and then "
+        f"tilenca emulate --model {where}"
+    )

@@ -107,8 +107,8 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
         "others fall short, added up: 0.01 is 1 % of the runs of one target"
     )
     warn(
-        "progress: the loss, the share of drawings with every tile right, iterations per second"
-        f"{met if plan.recipe.check_every else ''}"
+        "progress: the share of drawings with every tile right, on a terminal also the loss and iterations "
+        f"per second{met if plan.recipe.check_every else ''}; without a terminal a line a minute"
     )
 
 

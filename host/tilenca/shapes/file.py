@@ -104,8 +104,8 @@ def find_shape(shapes: Sequence[Shape], name: str, path: Path) -> int:
     for number, shape in enumerate(shapes):
         if shape.name == name:
             return number
-    names = " ".join(shape.name for shape in shapes)
-    raise UsageError(f"{path}: no shape '{name}'; it has: {names}")
+    names = [shape.name for shape in shapes]
+    raise UsageError(f"{path}: no shape '{name}'{did_you_mean(name, names)}; it has: {' '.join(names)}")
 
 
 def too_large(shapes: Sequence[Shape]) -> str | None:
