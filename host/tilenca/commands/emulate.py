@@ -174,6 +174,7 @@ def run(args: argparse.Namespace) -> int:
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     told = _foreign(hello, known and known[0], task)
+    args.foreign = bool(told)
     for note in told:
         warn(f"tilenca: {note}")
     settings = EmulationSettings(
