@@ -51,7 +51,7 @@ def test_sources_that_are_current_stay_and_others_are_brought_up_to_date(
 
 def test_a_model_without_a_build_says_how_to_get_one(tmp_path: Path) -> None:
     with pytest.raises(
-        BuildError, match="no firmware was built of it; run: tilenca export --model .* --build"
+        BuildError, match=r"no firmware was built of it; run: tilenca export --model .* --build"
     ):
         image_of(tmp_path)
     assert image_of(paths.DEFAULT_MODEL) == paths.firmware_elf()

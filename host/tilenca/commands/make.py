@@ -24,7 +24,7 @@ from tilenca.training.recipes import RECIPES
 from tilenca.views.abilities import abilities
 
 STEPS = 4
-AROUND_S = 90.0  # to measure, build and emulate, in round numbers
+AROUND_S, AROUND_TILES = 90.0, 50  # to measure, build and emulate so many tiles, in round numbers
 TIMED_STEPS = 3  # iterations that are timed before the training begins
 
 
@@ -167,5 +167,6 @@ def _estimate(plan: TrainingPlan) -> str:
     each_s = (time.perf_counter() - began_s) / TIMED_STEPS
     seeds = -(-len(plan.seeds) // processors())
     minutes = each_s * plan.recipe.iterations * seeds / 60
-    after = f"then about {AROUND_S / 60:g} min to measure, build and emulate"
+    around_s = AROUND_S * max(1.0, int(plan.task.sizes.sum()) / AROUND_TILES)
+    after = f"then about {around_s / 60:.1f} min to measure, build and emulate"
     return f"at most about {max(1, round(minutes))} min, less if the targets hold early; {after}"
