@@ -65,19 +65,6 @@ def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> N
         load_drawings([shapes, shapes])
 
 
-def test_what_has_more_tiles_than_ids_is_not_trained_on(tmp_path: Path) -> None:
-    file = tmp_path / "large.toml"
-    block = "\n".join(["#" * 10] * 10)
-    file.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n[sizes]\nmore = ["15x15", "20x20"]\n')
-    assert len(load_training_task([file], 1.5, 20)[0]) == 1
-    with pytest.raises(UsageError, match=r"'0' has 400 tiles at 20x20; the most that ids allow are 255"):
-        load_training_task([file], 2.0, 20)
-    twice = "\n".join(["#" * 20] * 20)
-    file.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{twice}\n"""\n')
-    with pytest.raises(UsageError, match=r"large.toml: shape '0' has 400 tiles"):
-        load_training_task([file], 1.0, 20)
-
-
 def test_a_large_area_has_no_strokes_to_vary(tmp_path: Path) -> None:
     file = tmp_path / "areas.toml"
     for side, strokes in ((4, True), (15, False)):

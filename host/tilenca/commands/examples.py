@@ -13,6 +13,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
         "tilenca sweep --axis loss=0:0.6:0.1 --runs 20 --out build/loss",
         "tilenca sweep --axis size=5x4,7x6 --axis dead=0,0.1 --out build/dead --plot",
     ),
+    "report": ("tilenca report --quick --out build/report", "tilenca report --out build/report --jobs 8"),
     "plot": ("tilenca plot models/mine", "tilenca plot --film four.gif --shape 4"),
     "simulate": ("tilenca simulate --shape 4 --watch", "tilenca simulate --array 100x100 --steps 20"),
     "export": ("tilenca export --model models/mine --build", "tilenca export --plan --hidden 64"),

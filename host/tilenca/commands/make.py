@@ -154,7 +154,7 @@ def _is_trained(args: argparse.Namespace, out: Path) -> bool:
 
 def _estimate(plan: TrainingPlan) -> str:
     """How long the training takes at most, from some iterations on this machine."""
-    from tilenca.simulator.simulator import processors
+    from tilenca.base.processors import processors
     from tilenca.training.runner import Job, make_trainer
     from tilenca.training.trainer import Config
 

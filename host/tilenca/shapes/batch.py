@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
-from tilenca.shapes.file import MAX_TILES, Shape, Task, load_task, too_large
-from tilenca.shapes.sizes import Sizes, size_name
+from tilenca.shapes.file import Shape, Task, load_task
+from tilenca.shapes.sizes import Sizes
 from tilenca.shapes.skeleton import of_rows
 from tilenca.shapes.stretch import Rows
+from tilenca.shapes.trainable import extent, refuse_collisions, refuse_large_sizes, trainable
 from tilenca.shapes.variant import Variants
 
 Indices = NDArray[np.int64]
@@ -246,42 +247,16 @@ def load_training_task(
     Raises:
         UsageError: as `load_drawings`.
     """
-    drawn = _trainable(paths[0], max_classes)
+    drawn = trainable(paths[0], max_classes)
     sizes = drawn.sizes
-    _refuse_collisions(paths[0], drawn, sizes)
-    _refuse_large_sizes(paths[0], drawn, sizes, stretch)
+    refuse_collisions(paths[0], drawn, sizes)
+    refuse_large_sizes(paths[0], drawn, sizes, stretch)
     more = tuple(path for path in sizes.drawn if path.resolve() not in [given.resolve() for given in paths])
     if stretch > 1:
         paths, more = [*paths, *more], ()
-    tasks = chain([drawn], (_trainable(path, max_classes) for path in paths[1:]))
+    tasks = chain([drawn], (trainable(path, max_classes) for path in paths[1:]))
     joined = _join(paths, tasks, max_classes, labels)
     return replace(joined, variants=_variants_of(drawn)), replace(sizes, drawn=more)
-
-
-def _trainable(path: Path, max_classes: int) -> Task:
-    """The task of a file whose drawings can all be laid out."""
-    task = load_task(path, max_classes)
-    if (remedy := too_large(task.shapes)) is not None:
-        raise UsageError(f"{path}: {remedy}")
-    return task
-
-
-def _refuse_large_sizes(path: Path, task: Task, sizes: Sizes, factor: float) -> None:
-    """Refuses sizes to train on at which a drawing has more tiles than there are ids."""
-    fitting = sizes.within(_extent(task), factor)
-    for size in (*fitting.trained, *fitting.more):
-        for shape in task.shapes:
-            other = shape.stretched(size)
-            if other is not None and (tiles := len(other.cells)) > MAX_TILES:
-                raise UsageError(
-                    f"{path}: [sizes] '{shape.name}' has {tiles} tiles at {size_name(size)}; "
-                    f"the most that ids allow are {MAX_TILES}, so end at a smaller size"
-                )
-
-
-def _extent(task: Task) -> tuple[int, int]:
-    """Most rows and most columns of a task's drawings."""
-    return max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
 
 
 def _variants_of(task: Task) -> Variants | None:
@@ -292,29 +267,10 @@ def _variants_of(task: Task) -> Variants | None:
     if task.vary is None:
         return None
     # The skeletons of all drawings of a file share one unit square, so that narrow ones stay narrow.
-    rows, cols = _extent(task)
+    rows, cols = extent(task)
     unit = np.maximum((cols - 1, rows - 1), 1)
     drawn = [(shape.label, of_rows(shape.rows)) for shape in task.shapes]
     if max(len(skeleton.edges) for _, skeleton in drawn) > MOST_STROKES:
         return None
     scaled = [(label, replace(skeleton, points=skeleton.points / unit)) for label, skeleton in drawn]
     return Variants([*scaled, *task.forms], task.vary.sized((rows, cols), task.sizes), task.sizes.held_out)
-
-
-def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:
-    """Refuses sizes at which two classes are one drawing, and a held-out size that is nevertheless drawn."""
-    for size in (*sizes.trained, *sizes.more, *sizes.held_out):
-        seen: dict[tuple[str, ...], Shape] = {}
-        for shape in task.shapes:
-            for up in (True, False):
-                other = shape.stretched(size, up)
-                if other is None:
-                    continue
-                twin = seen.setdefault(other.rows, other)
-                if twin.label != other.label:
-                    raise UsageError(
-                        f"{path}: [sizes] '{twin.label}' and '{other.label}' are the same drawing at "
-                        f"{size_name(size)}; leave that size out, or redraw one of them"
-                    )
-    if (largest := _extent(task)) in sizes.held_out:
-        raise UsageError(f"{path}: [sizes] holds out {size_name(largest)}, which the shapes are drawn at")

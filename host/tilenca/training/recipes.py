@@ -48,6 +48,7 @@ class Recipe:
             not agree go into the perturbed pool.
         stability_penalty: weight of the squared change of converged states over one iteration.
         loss_limit: the most that one cell can add to the loss, in units of the squared error; 0: any.
+        limited_from: share of the iterations after which that limit holds; before, nothing may be given up.
         fire_rate: least and most share of tiles that update in a tick, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
         ticks_per_period: least and most ticks that one period of such a clock takes.
@@ -101,6 +102,7 @@ class Recipe:
     trials: int = 300
     stability_penalty: float = 0.0
     loss_limit: float = 0.0
+    limited_from: float = 0.5
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
     ticks_per_period: tuple[float, float] = (2.0, 4.0)
@@ -172,7 +174,7 @@ RECIPES: dict[str, Recipe] = {
     # reaches and what it costs.
     "forms": replace(
         FULL,
-        iterations=72_000,
+        iterations=66_000,
         batch=36,
         undisturbed_pool=384,
         undisturbed_batch=14,
@@ -193,8 +195,11 @@ RECIPES: dict[str, Recipe] = {
     "many": replace(
         FULL,
         hidden=112,
-        iterations=60_000,
+        iterations=36_000,
+        batch=28,
+        ticks=(10, 24),
         undisturbed_pool=384,
+        undisturbed_batch=8,
         mine_every=1000,
         loss_limit=1.0,
         failure_weighting=0.3,
