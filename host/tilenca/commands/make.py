@@ -16,7 +16,6 @@ from tilenca.base.shipped import shapes_file
 from tilenca.base.stdio import warn
 from tilenca.commands import emulate, train
 from tilenca.commands.arguments import Parser, count, seed, whole
-from tilenca.commands.origin import without_a_dash
 from tilenca.commands.own_firmware import build_beside
 from tilenca.commands.train_plan import TrainingPlan, make_plan
 from tilenca.model.file import checkpoints, load_model
@@ -74,8 +73,6 @@ def run(args: argparse.Namespace) -> int:
     model = load_model(out)
     for line in abilities(json.loads((out / "metrics.json").read_text(encoding="utf-8"))):
         print(line)
-    if (note := without_a_dash(model)) is not None:
-        warn(note)
     warn(_step(3, "building the firmware, about a minute the first time"))
     image = build_beside(model, out)
     warn(_step(4, "emulating every drawing"))

@@ -17,6 +17,7 @@ from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
+from tilenca.commands.origin import without_a_dash
 from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
@@ -116,6 +117,8 @@ def run(args: argparse.Namespace) -> int:
     for path in checkpoints(args.out):
         path.unlink()
     report(args, where, result.metrics, time.monotonic() - started)
+    if (note := without_a_dash(result.model)) is not None:
+        warn(note)
     if not is_fit(args, result.metrics):
         warn(f"tilenca: only {result.metrics['targets_held']} targets held: do not rely on this model")
         return 1
