@@ -122,7 +122,7 @@ def _advance(
     check: tuple[int, int, float] | None = None
     while not trainer.done:
         trainer.step()
-        if suite is not None and trainer.iteration % recipe.check_every == 0:
+        if suite is not None and (trainer.iteration % recipe.check_every == 0 or trainer.done):
             check = _check(trainer, suite)
         stop = interrupted()
         if stop or time.monotonic() - saved > CHECKPOINT_EVERY_S:
