@@ -13,7 +13,7 @@ import pytest
 
 from support.training import train
 from tilenca import cli
-from tilenca.commands.train import add_arguments, report
+from tilenca.commands.train import add_arguments, is_fit, report
 from tilenca.model.file import load_model
 
 WRITTEN = ("model.json", "weights.npz", "metrics.json", "history.csv", "README.md")
@@ -202,3 +202,23 @@ def test_the_worst_missed_targets_come_first_and_the_card_has_the_rest(
     said = capsys.readouterr().out.splitlines()
     assert [line.split(",")[0] for line in said[1:-1]] == [f"  missed: row {n}" for n in range(8)]
     assert said[-1] == f"  and 10 more, all in {tmp_path / 'README.md'}"
+
+
+@pytest.mark.parametrize(
+    ("recipe", "held", "fit"),
+    [("quick", (True, False), True), ("quick", (True, False, False), False), ("smoke", (False,), True)],
+)
+def test_a_model_that_holds_less_than_half_of_its_targets_is_not_fit(
+    recipe: str, held: tuple[bool, ...], fit: bool
+) -> None:
+    rows = [{"holds": holds, "target": 0.9} for holds in held] + [{"holds": False, "target": None}]
+    assert is_fit(argparse.Namespace(recipe=recipe), {"rows": rows}) == fit
+
+
+def test_a_training_that_holds_too_little_ends_with_1_and_keeps_its_model(
+    two_shapes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("tilenca.commands.train.is_fit", lambda args, metrics: False)
+    assert train(two_shapes, tmp_path, "--iterations", "2") == 1
+    assert "targets held: do not rely on this model" in capsys.readouterr().err
+    assert (tmp_path / "model.json").exists()

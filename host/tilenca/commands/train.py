@@ -17,6 +17,7 @@ from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
+from tilenca.commands.origin import without_a_dash
 from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
@@ -116,7 +117,18 @@ def run(args: argparse.Namespace) -> int:
     for path in checkpoints(args.out):
         path.unlink()
     report(args, where, result.metrics, time.monotonic() - started)
+    if (note := without_a_dash(result.model)) is not None:
+        warn(note)
+    if not is_fit(args, result.metrics):
+        warn(f"tilenca: only {result.metrics['targets_held']} targets held: do not rely on this model")
+        return 1
     return 0
+
+
+def is_fit(args: argparse.Namespace, metrics: dict[str, Any]) -> bool:
+    """Whether at least half of the targets held; recipe smoke only tries the commands."""
+    held = [bool(row["holds"]) for row in metrics["rows"] if row["target"] is not None]
+    return bool(args.recipe == "smoke") or 2 * sum(held) >= len(held)
 
 
 def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
@@ -276,5 +288,9 @@ def report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], secon
         print(f"  and {len(missed) - MOST_MISSED} more, all in {where / 'README.md'}")
     if missed and args.recipe == "smoke":
         warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
-    shapes = f" --shapes {shlex.join(map(str, args.shapes))}"
-    warn(f"next: tilenca evaluate --model {where}{shapes}, or tilenca export --model {where} and pio run")
+    elif missed:
+        warn("note: more of them hold with more --iterations or --seeds, a wider --hidden, or --recipe full")
+    warn(
+        f"next: tilenca evaluate --model {where}, or tilenca export --model {where} --build and then "
+        f"tilenca emulate --model {where}"
+    )
