@@ -12,13 +12,14 @@ import { listenToKeys } from "./components/keys.js";
 import { Notice } from "./components/notice.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
+import { openEmulator } from "./stream/emulator.js";
 import { faultsNow, kindsChangedBy } from "./stream/faults.js";
-import { openSocket } from "./stream/socket.js";
+import { openServer } from "./stream/socket.js";
 import { BROKE_OFF, TOO_MANY_PAGES, WRONG_TOKEN } from "./stream/source.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
 
-const tiles = new Tiles();
+export const tiles = new Tiles();
 /** @type {Start | null} */
 let start = null;
 let noise = 0;
@@ -159,17 +160,15 @@ function checkModel() {
   start.model = modelId;
 }
 
-const token = new URLSearchParams(location.hash.slice(1)).get("token");
-const url = new URL("stream", location.href);
-url.protocol = url.protocol.replace("http", "ws");
-url.search = token ? new URLSearchParams({ token }).toString() : "";
-url.hash = "";
-
-const source = openSocket(url.href, {
+/** @type {import("./stream/source.js").Listener} */
+const listener = {
   onEvents: show,
   onOpen: () => notice.clear(),
   onLost: (seconds, code) => notice.stay(lostWords(code, `trying again in ${Math.ceil(seconds)} s`)),
-});
+};
+// The document says what stands behind it: `tilenca page`, or the emulator beside it in the bundle.
+const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content");
+const source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
 
 /** @param {number} code of the end of the connection @param {string} again when it is tried again */
 function lostWords(code, again) {

@@ -13,7 +13,8 @@ from tilenca import cli
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_SHAPES
 from tilenca.emulator.experiment import firmware_settings
-from tilenca.page.emulated import Drawing, EmulatedSource
+from tilenca.page.emulated import EmulatedSource
+from tilenca.page.offer import Drawing
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.sentences import TileSentence, parse_sentence
 from tilenca.protocol.stream import KINDS, StreamEvent

@@ -13,6 +13,7 @@ from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.faults import parse as parse_fault
 from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.types import port_name
+from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.line_reader import LineReader
@@ -36,14 +37,6 @@ from tilenca.shapes.glyphs import looks_of
 # Up to this speed there is time to look at single frames on the cables.
 FRAMES_SPEED = 0.3
 NO_POWER = "no power"
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A shape that the page offers; `name` is unique among them, such as `digits-3x3/4`."""
-
-    name: str
-    shape: Shape
 
 
 @dataclass

@@ -37,7 +37,7 @@ class Outbox:
                 self._counters[kind] += 1
                 return kind, self._counters[kind] % most
         if "raw" in event:
-            return "raw", port, *_subject(str(event["raw"]))
+            return "raw", port, *subject_of(str(event["raw"]))
         for kind in ("stream", "run", "pace"):
             if kind in event:
                 return (kind,)
@@ -70,7 +70,7 @@ class Outbox:
             self._seen = batch
 
 
-def _subject(raw: str) -> tuple[str, str]:
+def subject_of(raw: str) -> tuple[str, str]:
     """The name of a sentence, and the side of a `$LINK`; one subject for all lines that are no sentence."""
     sentence = parse_sentence(raw)
     if isinstance(sentence, LinkSentence):
