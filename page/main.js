@@ -10,16 +10,21 @@ import { Drawings } from "./components/drawings.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
 import { Notice } from "./components/notice.js";
+import { Share } from "./components/share.js";
+import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
 import { faultsNow, kindsChangedBy } from "./stream/faults.js";
+import { Recorder } from "./stream/recorder.js";
+import { openRecording } from "./stream/recording.js";
 import { openServer } from "./stream/socket.js";
 import { BROKE_OFF, TOO_MANY_PAGES, WRONG_TOKEN } from "./stream/source.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
 
 export const tiles = new Tiles();
+const recorder = new Recorder();
 /** @type {Start | null} */
 let start = null;
 let noise = 0;
@@ -71,6 +76,10 @@ const deeds = {
     send({ do: "pace", speed, paused });
   },
   step: () => send({ do: "step", seconds: tiles.stepS }),
+  /** One update back. */
+  back: () => {
+    if (tiles.end !== null) timeline.go(timeline.aim - tiles.stepS);
+  },
   restart() {
     if (!start) return;
     remember();
@@ -93,7 +102,21 @@ const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
 const agreement = new Agreement(tiles);
+const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }));
 const verdict = new Verdict();
+new Share(byId("top-deeds"), tiles, recorder, {
+  link: () => {
+    remember();
+    return location.href;
+  },
+  words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
+  say: (text) => notice.say(text),
+  replay(events) {
+    source.close();
+    notice.say("A recording: go to any time of it. Reload the page for running tiles.");
+    source = openRecording(events, listener);
+  },
+});
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing));
 listenToKeys(bar, deeds);
 
@@ -118,6 +141,7 @@ function open(wanted) {
 
 /** Notes what lies on the board now, in `start` and in the address. */
 function remember() {
+  if (tiles.source === "recording") return;
   checkModel();
   const laid = tiles.laid();
   if (!start || !laid.length) return;
@@ -134,6 +158,7 @@ function show(events) {
   const now = performance.now();
   const first = events.find((event) => event.stream !== undefined);
   tiles.take(events);
+  recorder.take(events);
   if (first) {
     drawings.fill(tiles.drawings, (label) => tiles.look(label).rgb);
     start = start ?? readAddress(location.search, tiles.drawings);
@@ -150,6 +175,7 @@ function show(events) {
   bar.update();
   verdict.update(tiles, now);
   agreement.update(now);
+  timeline.update(now);
 }
 
 /** Says so where the address was made with another model. */
@@ -168,7 +194,7 @@ const listener = {
 };
 // The document says what stands behind it: `tilenca page`, or the emulator beside it in the bundle.
 const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content");
-const source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
+let source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
 
 /** @param {number} code of the end of the connection @param {string} again when it is tried again */
 function lostWords(code, again) {

@@ -67,6 +67,42 @@ def test_an_address_is_the_same_run_here_and_with_a_server(
     assert said[0] == said[1]
 
 
+@pytest.mark.parametrize("is_static", [True, False])
+def test_time_goes_back_and_a_hand_begins_another_future(
+    visit: Visit, site: str, server: PageServer, is_static: bool
+) -> None:
+    visit.page.goto(f"{site if is_static else server.url}?speed=0.5&spread=0.1&until=0.9")
+    visit.page.get_by_role("button", name="Go on").wait_for()
+    visit.wait_for_verdict("All 16 tiles show 8")
+    line = visit.page.locator("#timeline")
+    assert "0.90 of 0.90 s" in line.inner_text()
+    told = "document.getElementById('agreement-text').textContent"
+    changes = visit.page.evaluate(f"{told}.split(', ')[1]")
+    visit.page.locator("#moment").fill("200")
+    visit.wait_until("document.getElementById('clock').textContent === '0.20 s'")
+    assert "All" not in visit.verdict
+    visit.page.locator("h1").click()
+    visit.page.keyboard.press(",")
+    visit.page.keyboard.press(",")
+    visit.wait_until("document.getElementById('clock').textContent === '0.16 s'")
+    visit.page.locator("#moment").focus()
+    visit.page.keyboard.press("ArrowRight")
+    visit.wait_until("document.getElementById('clock').textContent === '0.18 s'")
+    visit.page.get_by_label("Speed").fill("3")
+    visit.page.get_by_role("button", name="Go on").click()
+    visit.wait_for_verdict("All 16 tiles show 8")  # the same future, of which nothing is counted twice
+    visit.page.get_by_role("button", name="Pause").click()
+    visit.page.get_by_role("button", name="Go on").wait_for()
+    assert visit.page.evaluate(f"{told}.split(', ')[1]") == changes
+    visit.page.locator("#moment").fill("300")
+    visit.wait_until("document.getElementById('clock').textContent === '0.30 s'")
+    visit.page.locator("[data-port=tile-11]").focus()
+    visit.page.keyboard.press("Delete")
+    visit.wait_until("document.getElementById('timeline').textContent.includes('of 0.30 s')")
+    visit.page.get_by_role("button", name="Go on").click()
+    visit.wait_for_verdict("All 15 tiles show 9")
+
+
 def test_what_cannot_be_is_said(visit: Visit, site: str) -> None:
     visit.page.goto(f"{site}?draw=11&spread=0&fault=off@77")
     visit.page.locator("#notice", has_text="no tile '77'").wait_for()

@@ -223,3 +223,52 @@ def test_whatever_hands_do_the_page_knows_what_lies_where(
         if other in ((row + 1, col), (row, col + 1))
     }
     assert joined == beside
+
+
+def said(source: EmulatedSource, steps: int) -> list[StreamEvent]:
+    """What tiles say, and where they lie, in so many twentieths of a second."""
+    events = []
+    for _ in range(steps):
+        source.take(commands.Step(0.05))
+        events += [event for event in source.advance(0.0) if "raw" in event or "place" in event]
+    return events
+
+
+def test_time_goes_back_and_the_same_future_comes(source: EmulatedSource) -> None:
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True, faults=("loss=0.1", "cut@1-3:0.2-0.5")))
+    first = said(source, 5)
+    source.take(commands.Pull("tile-04"))
+    source.take(commands.Put(9, 9))
+    then = source.advance(0.0) + said(source, 8)
+    source.take(commands.Seek(0.1))
+    jump, *state = source.advance(0.0)
+    assert (jump["time"], jump["jump"]) == (pytest.approx(0.1, abs=2e-5), {"from": pytest.approx(0.65)})
+    assert [event["place"] for event in of(state, "place")] == [list(cell) for cell in FOUR]
+    assert of(state, "pace")[-1]["pace"] | {"end": 0} == {
+        "speed": 1.0, "paused": True, "share": 1.0, "end": 0,
+    }  # fmt: skip
+    again = said(source, 11)
+    raws = [event for event in first + then if "raw" in event and event["time"] > jump["time"]]
+    assert of(again, "raw") == raws
+    assert [(event["port"], event["place"]) for event in of(again, "place")] == [("tile-04", [9, 9])]
+
+
+def test_another_deed_in_the_past_begins_another_future(source: EmulatedSource) -> None:
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True))
+    said(source, 6)
+    source.take(commands.Pull("tile-04"))
+    said(source, 2)
+    source.take(commands.Seek(0.2))
+    source.take(commands.Pull("tile-10"))
+    assert of(source.advance(0.0), "pace")[-1]["pace"]["end"] == pytest.approx(0.2, abs=2e-5)
+    assert {event["port"] for event in said(source, 6) if "place" in event} == set()
+    source.take(commands.Seek(99.0))
+    events = source.advance(0.0)
+    assert events[0]["time"] == pytest.approx(0.5, abs=1e-4)
+    assert "tile-04" in {event["port"] for event in of(events, "place")}
+    assert "tile-10" not in {event["port"] for event in of(events, "place")}
+
+
+def test_there_is_no_past_before_a_run(source: EmulatedSource) -> None:
+    with pytest.raises(UsageError, match="nothing runs yet"):
+        source.take(commands.Seek(0.0))

@@ -12,7 +12,8 @@ from tilenca.protocol.sentences import parse_sentence
 EVENTS = {
     "stream": stream.stream_event("emulated", looks=[]),
     "run": stream.run_event(0.0, {"seed": 3}),
-    "pace": stream.pace_event(1.0, 0.1, False, 0.98765),
+    "jump": stream.jump_event(1.0, 2.5),
+    "pace": stream.pace_event(1.0, 0.1, False, 0.98765, 2.5),
     "place": stream.place_event(1.0, "tile-03", (2, -1)),
     "cable": stream.cable_event(1.0, "tile-03", "E", whole=False),
     "raw": stream.raw_event(1.23456789, "tile-03", b"$ASK*\xff"),

@@ -18,6 +18,7 @@ GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "pace", "speed": 0, "paused": True}, commands.Pace(0.0, True)),
     ({"do": "rest", "on": True}, commands.Rest(True)),
     ({"do": "step", "seconds": 0.02}, commands.Step(0.02)),
+    ({"do": "seek", "seconds": 0}, commands.Seek(0.0)),
     ({"do": "put", "row": -3, "col": 64}, commands.Put(-3, 64)),
     ({"do": "pull", "port": "tile-03"}, commands.Pull("tile-03")),
     ({"do": "move", "port": "tile-03", "row": 1, "col": 1}, commands.Move("tile-03", 1, 1)),

@@ -134,6 +134,29 @@ def test_hands_and_faults_are_told_alike(both: Any) -> None:
     assert {"frame", "raw", "place", "cable", "open", "display", "pace", "run"} <= kinds
 
 
+def test_time_goes_backwards_alike(both: Any) -> None:
+    """The same past, the same future with all that hands did, and another one after another deed."""
+    step = {"do": "step", "seconds": 0.05}
+    commands = [
+        opened(11, cells=EIGHT, speed=0.1, faults=["cut@1-2:0.1-0.4", "loss=0.05:0.3-0.6"]),
+        *[step] * 6,
+    ]
+    commands += [
+        {"do": "pull", "port": "tile-11"},
+        *[step] * 4,
+        {"do": "put", "row": 7, "col": 7},
+        *[step] * 4,
+    ]
+    commands += [{"do": "seek", "seconds": 0.21}, *[step] * 11, {"do": "seek", "seconds": 0.5}, step]
+    commands += [{"do": "seek", "seconds": 0.0}, *[step] * 2, {"do": "noise", "loss": 0.1}, *[step] * 3]
+    commands += [{"do": "seek", "seconds": 9}, {"do": "seek", "seconds": 0.1}, step]
+    answers = both(commands)
+    jumps = [event for events in answers for event in events if "jump" in event]
+    came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
+    assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
+    assert [event["time"] for event in jumps] == pytest.approx(went_to, abs=1e-4)
+
+
 def test_mistakes_are_refused_alike(both: Any) -> None:
     before, after = both([MISTAKES[0]])[1], both([opened(1, cells=EIGHT[:4]), *MISTAKES])[2:]
     assert before[0]["refused"] == "nothing runs yet; open a drawing first"

@@ -23,9 +23,9 @@ class Outbox:
     def put(self, events: Iterable[StreamEvent]) -> None:
         """Adds events, in their order; a newer one replaces the older one of the same thing."""
         for event in events:
-            if "run" in event:  # all before it is void
-                kept = {key: old for key, old in self._waiting.items() if key[0] in ("stream", "refused")}
-                self._waiting = kept
+            if "run" in event or "jump" in event:  # all before it is void
+                stays = ("stream", "refused") if "run" in event else ("stream", "refused", "run")
+                self._waiting = {key: old for key, old in self._waiting.items() if key[0] in stays}
             key = self._key(event)
             self._waiting.pop(key, None)
             self._waiting[key] = event
@@ -38,7 +38,7 @@ class Outbox:
                 return kind, self._counters[kind] % most
         if "raw" in event:
             return "raw", port, *subject_of(str(event["raw"]))
-        for kind in ("stream", "run", "pace"):
+        for kind in ("stream", "run", "jump", "pace"):
             if kind in event:
                 return (kind,)
         return (

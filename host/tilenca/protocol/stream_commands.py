@@ -138,6 +138,13 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Seek:
+    """Goes to a time that the run has been at, and pauses there."""
+
+    seconds: float = _checked(_number(0, MAX_SECONDS))
+
+
+@dataclass(frozen=True)
 class Put:
     """Plugs a tile in at an empty place; it boots."""
 
@@ -215,12 +222,26 @@ class Seen:
 
 
 StreamCommand: TypeAlias = (
-    Open | Pace | Rest | Step | Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise | Seen
+    Open
+    | Pace
+    | Rest
+    | Step
+    | Seek
+    | Put
+    | Pull
+    | Move
+    | Arrange
+    | Cut
+    | Power
+    | Freeze
+    | Reset
+    | Noise
+    | Seen
 )
 KINDS: dict[str, type[Any]] = {
     kind.__name__.lower(): kind
     for kind in (
-        Open, Pace, Rest, Step, Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise, Seen,
+        Open, Pace, Rest, Step, Seek, Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise, Seen,
     )
 }  # fmt: skip
 

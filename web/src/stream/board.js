@@ -143,6 +143,25 @@ export class Board {
     if (isWhole) this.faults.cut.delete(`${link[2]},${link[3]}`); // a fault may have named its other end
   }
 
+  // --- moments ---
+
+  /** The board as it is now. */
+  save() {
+    const { array, places, cables, faults } = this;
+    return {
+      timeS: array.timeS, snapshot: array.save().slice(), places: new Map(places), cables: [...cables], faults: faults.save(),
+    };
+  }
+
+  /** Goes to a moment of this board; from there the same happens as did then. @param {ReturnType<Board["save"]>} moment */
+  restore(moment) {
+    this.array.restore(moment.snapshot);
+    this.places = new Map(moment.places);
+    this.cables.splice(0, Infinity, ...moment.cables); // the faults know this list, too
+    this.faults.restore(moment.faults);
+    this.traffic.restart(moment.cables);
+  }
+
   /** @param {number} tile @param {Place} place */
   #plugIn(tile, place) {
     this.places.set(tile, place);

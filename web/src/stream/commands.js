@@ -74,6 +74,7 @@ const KINDS = {
   pace: { speed: [speed], paused: [truth, false] },
   rest: { on: [truth] },
   step: { seconds: [number(16e-6, 10)] },
+  seek: { seconds: [number(0, MAX_SECONDS)] },
   put: { row: [place], col: [place] },
   pull: { port: [text] },
   move: { port: [text], row: [place], col: [place] },

@@ -58,8 +58,8 @@ export function parseFault(text) {
   return { text, kind, value, where: where ?? "", fromS, toS };
 }
 
-/** @param {() => void} act what may find that a cable has gone with its tile */
-function ifCable(act) {
+/** @param {() => void} act what may find that a cable or a tile has gone */
+export function ifThere(act) {
   try {
     act();
   } catch (error) {
@@ -87,6 +87,20 @@ export class Faults {
     this.array = array;
     this.links = links;
     this.seed = seed;
+  }
+
+  /** A copy of all that is planned and stands. */
+  save() {
+    const spoilt = new Map([...this.#spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
+    return { cut: new Set(this.cut), everywhere: new Map(this.#everywhere), due: [...this.#due], spoilt };
+  }
+
+  /** Knows again what a copy says; the array's own snapshot has the faults themselves. @param {ReturnType<Faults["save"]>} moment */
+  restore(moment) {
+    this.cut = new Set(moment.cut);
+    this.#everywhere = new Map(moment.everywhere);
+    this.#due = [...moment.due];
+    this.#spoilt = new Map([...moment.spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
   }
 
   /** Plans a fault. @param {Spec} spec @throws {TilencaError} there is no such tile or cable */
@@ -157,7 +171,7 @@ export class Faults {
       const fault = {
         loss: spoilt.get("loss") ?? 0, flip: spoilt.get("flip") ?? 0, delayS: (spoilt.get("delay") ?? 0) / 1000,
       };
-      ifCable(() => this.array.setFault(tile, side, fault, this.seed));
+      ifThere(() => this.array.setFault(tile, side, fault, this.seed));
     }
   }
 
@@ -175,7 +189,7 @@ export class Faults {
 
   /** Cuts the cable at an end, or mends it. @param {End} end @param {boolean} on */
   connect([tile, side], on) {
-    ifCable(() => {
+    ifThere(() => {
       if (on) this.array.mend(tile, side);
       else this.array.cut(tile, side);
       if (on) this.cut.delete(`${tile},${side}`);

@@ -15,6 +15,14 @@ export class Lines {
     this.found = [];
   }
 
+  /** Another one that goes on from here. */
+  copy() {
+    const other = new Lines();
+    other.#text = this.#text;
+    other.#isWhole = this.#isWhole;
+    return other;
+  }
+
   /** @param {ArrayLike<number>} values the bytes @param {ArrayLike<number>} times of each, in seconds */
   feed(values, times) {
     for (let place = 0; place < values.length; place++) {

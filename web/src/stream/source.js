@@ -4,18 +4,18 @@ import { TilencaError } from "../module.js";
 import { Board } from "./board.js";
 import { MOST_TILES, checked } from "./commands.js";
 import { sorted } from "./faults.js";
-import { Lines } from "./lines.js";
 import { Pace } from "./pace.js";
 import { SIDES } from "./sides.js";
+import { Teller, event, portName } from "./teller.js";
+import { Timeline } from "./timeline.js";
 
 // Up to this speed there is time to look at single frames on the cables.
 const FRAMES_SPEED = 0.3;
-const NO_POWER = "no power";
 const UNKNOWN = "-";
 
 /** @typedef {import("./board.js").Place} Place */
 /** @typedef {import("./commands.js").Command} Command */
-/** @typedef {{ time: number, [subject: string]: unknown }} StreamEvent */
+/** @typedef {import("./teller.js").StreamEvent} StreamEvent */
 
 /**
  * What the page is offered: made by `python -m release.page_bundle`.
@@ -25,13 +25,7 @@ const UNKNOWN = "-";
  * @property {number} updates of the same
  */
 
-/** @typedef {{ place: string, powered: boolean | null, display: string, lines: Lines }} Seen what the page was told of a tile */
-
-/** @param {number} time @param {Record<string, unknown>} about @returns {StreamEvent} */
-const event = (time, about) => ({ time: Number(time.toFixed(6)), ...about });
-
-/** @param {number} index */
-const portName = (index) => `tile-${String(index + 1).padStart(2, "0")}`;
+/** A board, and what its tiles have said until then. @typedef {{ board: ReturnType<Board["save"]>, said: ReturnType<Teller["save"]> }} Moment */
 
 export class EmulatedSource {
   /** @type {Board | null} */
@@ -40,10 +34,10 @@ export class EmulatedSource {
   #isResting = false;
   /** @type {StreamEvent[]} */
   #events = [];
-  /** @type {Seen[]} */
-  #seen = [];
-  /** The cables that the page knows to be cut. @type {import("../array.js").Link[]} */
-  #cut = [];
+  /** Of the board, as long as there is one. @type {Teller} */
+  #teller = /** @type {any} */ (null);
+  /** @type {Timeline<Moment, Command>} */
+  #timeline = new Timeline();
 
   /**
    * @param {import("../emulator.js").Emulator} emulator
@@ -85,16 +79,26 @@ export class EmulatedSource {
           this.#pace.set(this.#pace.speed, true);
         }
         break;
+      case "seek":
+        this.#seek(command.seconds);
+        break;
       default:
         this.#layHandsOn(command);
     }
-    this.#tellPlaces();
+    if (this.#board) this.#events.push(...this.#teller.places());
   }
 
   /** @param {Command} command */
   #layHandsOn(command) {
-    const board = this.#board;
-    if (!board) throw new TilencaError("nothing runs yet; open a drawing first");
+    if (!this.#board) throw new TilencaError("nothing runs yet; open a drawing first");
+    this.#do(this.#board, command);
+    this.#timeline.note(this.#board.array.timeS, command);
+    this.#keep(this.#board);
+    this.#tellPace(); // another future begins
+  }
+
+  /** What a hand does, now or once more in a past that is run again. @param {Board} board @param {Command} command */
+  #do(board, command) {
     switch (command.do) {
       case "put":
         if (board.places.size >= MOST_TILES) {
@@ -140,11 +144,12 @@ export class EmulatedSource {
     });
     this.close();
     this.#board = board;
-    this.#seen = [];
-    this.#cut = [];
+    this.#teller = new Teller(board);
+    this.#timeline = new Timeline();
     this.#pace = new Pace(wanted.speed, wanted.paused, wanted.until_s);
     this.#events = [event(0, { run: { seed: wanted.seed, shape: name, tiles: cells.length } })];
     this.#look();
+    this.#keep(board);
   }
 
   /** The name of the drawing with these cells, if it is one of those offered. @param {Place[]} cells */
@@ -178,10 +183,10 @@ export class EmulatedSource {
   /** @param {number} seconds */
   #run(seconds) {
     if (seconds <= 0 || !this.#board) return;
-    const { array, faults } = this.#board;
+    const { array } = this.#board;
     const [startedS, beforeS] = [this.clock(), array.timeS];
     try {
-      faults.run(seconds);
+      this.#passTime(this.#board, seconds);
     } catch (error) {
       this.#pace.paused = true;
       this.#look();
@@ -189,70 +194,59 @@ export class EmulatedSource {
     }
     this.#pace.ran(array.timeS - beforeS, this.clock() - startedS, array.timeS);
     this.#look();
+    if (this.#timeline.isDue(array.timeS)) this.#keep(this.#board);
+  }
+
+  /** Runs on; in a past that is known, hands do what they did. @param {Board} board @param {number} seconds */
+  #passTime(board, seconds) {
+    const { array, faults } = board;
+    const endS = array.timeS + seconds;
+    for (const { timeS, deed } of this.#timeline.deedsIn(array.timeS, endS)) {
+      faults.run(Math.max(timeS - array.timeS, 0));
+      this.#do(board, deed);
+    }
+    if (endS > array.timeS) faults.run(endS - array.timeS);
+    this.#timeline.reached(array.timeS);
+  }
+
+  /** @param {Board} board */
+  #keep(board) {
+    const moment = board.save();
+    this.#timeline.keep(moment.timeS, { board: moment, said: this.#teller.save() }, moment.snapshot.length);
+  }
+
+  /** Goes to a time that the run has been at; all that hands did until then is done. @param {number} wantedS */
+  #seek(wantedS) {
+    const board = this.#board;
+    if (!board) throw new TilencaError("nothing runs yet; open a drawing first");
+    const [fromS, timeS] = [board.array.timeS, Math.min(wantedS, this.#timeline.endS)];
+    const nearest = this.#timeline.nearest(timeS);
+    if (!(nearest.timeS <= fromS && fromS <= timeS)) { // or it is nearer to run on
+      board.restore(nearest.moment.board);
+      this.#teller.restore(nearest.moment.said);
+    }
+    this.#pace.set(this.#pace.speed, true);
+    this.#passTime(board, timeS - board.array.timeS);
+    this.#events = this.#events.filter((one) => "run" in one || "refused" in one);
+    this.#tell(board.array.timeS, { jump: { from: Number(fromS.toFixed(6)) } });
+    this.#events.push(...this.#teller.all());
+    this.#tellPace();
   }
 
   // --- what the page is told ---
 
   #look() {
-    if (!this.#board) return;
-    const { array, traffic } = this.#board;
-    const now = array.timeS;
-    this.#tellPlaces();
-    const frames = traffic.read();
-    if (this.#pace.speed > 0 && this.#pace.speed <= FRAMES_SPEED) {
-      for (const frame of frames) {
-        this.#tell(frame.timeS, { port: portName(frame.tile), side: SIDES[frame.side], frame: frame.data });
-      }
-    }
-    const said = this.#seen.flatMap(({ lines }, index) => {
-      const tile = array.tile(index);
-      for (let got = tile.receive(); got.values.length > 0; got = tile.receive()) lines.feed(got.values, got.times);
-      return lines.take().map((line) => ({ ...line, index }));
-    });
-    said.sort((one, two) => one.timeS - two.timeS || (portName(one.index) < portName(two.index) ? -1 : 1));
-    for (const { timeS, raw, index } of said) this.#tell(timeS, { port: portName(index), raw });
-    this.#seen.forEach((seen, index) => {
-      const tile = array.tile(index);
-      const leds = [...SIDES].map((name, side) => ((tile.leds >> side) & 1 ? name : "-")).join("");
-      const display = { segments: tile.segments, rgb: [...tile.rgb], leds };
-      if (JSON.stringify(display) === seen.display) return;
-      seen.display = JSON.stringify(display);
-      this.#tell(now, { port: portName(index), display });
-    });
+    const { speed } = this.#pace;
+    this.#events.push(...this.#teller.look(speed > 0 && speed <= FRAMES_SPEED));
     this.#tellPace();
-  }
-
-  /** What lies where, has power, and is joined, as far as it is news. */
-  #tellPlaces() {
-    if (!this.#board) return;
-    const { array, places, cut } = this.#board;
-    const now = array.timeS;
-    while (this.#seen.length < array.size) {
-      this.#seen.push({ place: "", powered: null, display: "", lines: new Lines() });
-    }
-    this.#seen.forEach((seen, index) => {
-      const [port, place, { powered }] = [portName(index), places.get(index), array.tile(index)];
-      if ((place?.join() ?? "") !== seen.place) {
-        seen.place = place?.join() ?? "";
-        this.#tell(now, { port, place: place ? [...place] : null });
-      }
-      if (place && powered !== seen.powered) {
-        seen.powered = powered;
-        this.#tell(now, { port, open: powered, reason: powered ? "" : NO_POWER });
-      }
-    });
-    const [before, after] = [this.#cut, cut].map((links) => new Set(links.map(String)));
-    const news = [...this.#cut, ...cut].filter((link) => before.has(String(link)) !== after.has(String(link)));
-    for (const link of sorted(news)) {
-      this.#tell(now, { port: portName(link[0]), side: SIDES[link[1]], cable: after.has(String(link)) ? "cut" : "whole" });
-    }
-    this.#cut = cut;
   }
 
   #tellPace() {
     if (!this.#board) return;
     const { speed, paused, share } = this.#pace;
-    this.#tell(this.#board.array.timeS, { pace: { speed, paused, share: Number(share.toFixed(3)) } });
+    this.#tell(this.#board.array.timeS, {
+      pace: { speed, paused, share: Number(share.toFixed(3)), end: Number(this.#timeline.endS.toFixed(6)) },
+    });
   }
 
   /** @param {number} time @param {Record<string, unknown>} about */

@@ -1,13 +1,13 @@
 // The frames on the cables of an array, while cables come and go.
 import { SOUTH } from "../sides.js";
-import { endsOf, turned } from "./faults.js";
+import { endsOf, ifThere, turned } from "./faults.js";
 
 /** @typedef {import("../array.js").Link} Link */
 /** @typedef {{ timeS: number, tile: number, side: number, data: string }} CableFrame `data`: bytes in hex */
 
 /** Listens at cables, in both directions. */
 export class Traffic {
-  /** @type {Map<string, { tile: number, side: number, probe: import("../probe.js").Probe, frame: string }>} */
+  /** @type {Map<string, { tile: number, side: number, probe: import("../probe.js").Probe, frame: string, isMidway: boolean }>} */
   #taps = new Map();
 
   /** @param {import("../array.js").TileArray} array */
@@ -21,7 +21,7 @@ export class Traffic {
       const probe = side === SOUTH
         ? this.array.tile(other).tap(otherSide, { receiving: true })
         : this.array.tile(tile).tap(side);
-      this.#taps.set(`${tile},${side}`, { tile, side, probe, frame: "" });
+      this.#taps.set(`${tile},${side}`, { tile, side, probe, frame: "", isMidway: false });
     }
   }
 
@@ -31,6 +31,14 @@ export class Traffic {
       this.#taps.get(end.join())?.probe.free();
       this.#taps.delete(end.join());
     }
+  }
+
+  /** The array has gone to another moment, with these cables; a frame may be on its way there. @param {readonly Link[]} cables */
+  restart(cables) {
+    for (const { probe } of this.#taps.values()) ifThere(() => probe.free());
+    this.#taps.clear();
+    for (const cable of cables) this.watch(cable);
+    for (const tap of this.#taps.values()) tap.isMidway = true;
   }
 
   /** The frames that have ended since the last call, in order of their ends. */
@@ -43,7 +51,9 @@ export class Traffic {
           if (value !== 0) {
             tap.frame += value.toString(16).padStart(2, "0");
           } else if (tap.frame) {
-            seen.push({ timeS: got.times[place], tile: tap.tile, side: tap.side, data: tap.frame });
+            const { tile, side, frame, isMidway } = tap;
+            if (!isMidway) seen.push({ timeS: got.times[place], tile, side, data: frame });
+            tap.isMidway = false; // the beginning of the first one is missing
             tap.frame = "";
           }
         });
