@@ -15,6 +15,7 @@ import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
+import { MOST_DEEDS } from "./stream/deeds.js";
 import { faultsNow, kindsChangedBy } from "./stream/faults.js";
 import { Recorder } from "./stream/recorder.js";
 import { openRecording } from "./stream/recording.js";
@@ -34,6 +35,8 @@ let lastRefused = "";
 let given = [];
 /** @type {Set<string>} */
 const handled = new Set();
+/** What the run began with. @type {Start | null} */
+let opened = null;
 
 /** @param {Command} command */
 function send(command) {
@@ -84,6 +87,7 @@ const deeds = {
     if (!start) return;
     remember();
     start.until = null;
+    start.deeds = [];
     open(start);
   },
   /** @param {number} loss */
@@ -105,10 +109,7 @@ const agreement = new Agreement(tiles);
 const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }));
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
-  link: () => {
-    remember();
-    return location.href;
-  },
+  link: linkUntilNow,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text) => notice.say(text),
   replay(events) {
@@ -132,11 +133,23 @@ function slideUnder(drawing) {
 function open(wanted) {
   deeds.select(null);
   given = wanted.faults;
+  opened = { ...wanted };
   handled.clear();
+  for (const { deed } of wanted.deeds) for (const kind of kindsChangedBy(deed)) handled.add(kind);
   noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
   bar.showNoise(noise);
   const { cells, seed, speed, faults, spread, until } = wanted;
-  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until });
+  const planned = wanted.deeds.map(({ time, deed }) => [time, deed]);
+  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until, deeds: planned });
+}
+
+/** The address of the run as it was, with all that hands did, until now. */
+function linkUntilNow() {
+  if (!opened || tiles.source === "recording" || tiles.deeds.length > MOST_DEEDS) return location.href;
+  const until = Number(tiles.time.toFixed(6));
+  const deeds = tiles.deeds.filter(({ time }) => time <= until);
+  const run = { ...opened, speed: start?.speed ?? opened.speed, model: start?.model ?? "", until, deeds };
+  return new URL(writeAddress(run, tiles.drawings) + location.hash, location.href).href;
 }
 
 /** Notes what lies on the board now, in `start` and in the address. */
@@ -148,7 +161,7 @@ function remember() {
   start.cells = laid.map((tile) => tile.place);
   const isUp = tiles.time > start.spread + 0.1;
   if (isUp) start.faults = faultsNow(tiles, given, handled, noise);
-  const address = writeAddress(start, tiles.drawings);
+  const address = writeAddress({ ...start, deeds: [] }, tiles.drawings);
   if (address !== location.search) history.replaceState(null, "", address + location.hash);
   drawings.mark(known(start.cells, tiles.drawings)?.name ?? "");
 }

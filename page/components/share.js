@@ -33,7 +33,7 @@ export class Share {
     this.recorder = recorder;
     this.deeds = deeds;
     this.dialog = /** @type {HTMLDialogElement} */ (byId("share"));
-    this.link = element("input", { type: "text", readonly: true, id: "share-link", "aria-label": "Link to this run" });
+    this.link = element("input", { type: "text", readonly: true, id: "share-link", "aria-label": "Link to this run until now" });
     this.file = element("input", {
       type: "file", accept: ".jsonl", id: "share-file", class: "visually-hidden", tabindex: -1, "aria-hidden": "true",
       onchange: () => this.open(),

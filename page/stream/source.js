@@ -13,6 +13,7 @@
  *   most_tiles?: number, most_place?: number,
  *   run?: {seed: number, shape: string, tiles: number},
  *   jump?: {from: number},
+ *   deed?: Command,
  *   pace?: {speed: number, paused: boolean, share: number, end?: number},
  *   place?: Place | null,
  *   cable?: "whole" | "cut",

@@ -52,6 +52,8 @@ export class Tiles {
     this.pace = { speed: 1, paused: false, share: 1 };
     /** The time that one can go to at most; null: one cannot go back here. @type {number | null} */
     this.end = null;
+    /** What hands have done in this run, and will do. @type {import("./deeds.js").Deed[]} */
+    this.deeds = [];
     /** How often the run was taken to another time. */
     this.jumps = 0;
     this.seed = 0;
@@ -89,6 +91,8 @@ export class Tiles {
       this.stepS = (event.period_ms ?? 20) / 1000;
     } else if (event.run) {
       this.begin(event.run.seed, event.run.tiles);
+    } else if (event.deed) {
+      this.deeds = [...this.deeds.filter(({ time }) => time <= event.time), { time: event.time, deed: event.deed }];
     } else if (event.jump) {
       this.jump(event.time);
     } else if (event.pace) {
@@ -107,6 +111,7 @@ export class Tiles {
   begin(seed, tiles) {
     this.jump(0);
     this.history = new History();
+    this.deeds = [];
     this.end = null;
     this.seed = seed;
     this.startTiles = tiles;

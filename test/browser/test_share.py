@@ -1,6 +1,7 @@
 """What one can take along: a picture, a recording that the page replays, a link."""
 
 import json
+import re
 import struct
 from pathlib import Path
 
@@ -99,10 +100,38 @@ def test_what_is_no_recording_is_refused(shared: Visit, tmp_path: Path) -> None:
     assert shared.verdict == "All 15 tiles show 9"
 
 
+def test_the_link_is_the_run_with_all_that_hands_did(shared: Visit, tmp_path: Path) -> None:
+    """Whoever opens it sees the same at the same moment, to the byte of each state."""
+    page = shared.page
+    page.keyboard.press("Escape")
+    page.locator("[data-port=tile-02]").click()
+    page.get_by_role("button", name="Freeze").click()
+    for _ in range(5):
+        page.get_by_role("button", name="One update").click()
+    told = """async () => {
+      const { tiles } = await import("./main.js");
+      const names = ["port", "place", "label", "margin", "frozen", "segments", "rgb", "leds"];
+      return tiles.laid().map((tile) => Object.fromEntries(names.map((name) => [name, tile[name]])));
+    }"""
+    page.wait_for_selector("[data-port=tile-02][data-state=frozen]")
+    page.wait_for_timeout(500)
+    before = page.evaluate(told)
+    clock = page.inner_text("#clock")
+    page.get_by_role("button", name="Share").click()
+    link = page.input_value("#share-link")
+    assert "shape=digits/8" in link
+    assert re.findall(r"deed=[\d.]+,(\w+),([^&]+)", link) == [("pull", "11"), ("freeze", "2,1")]
+    page.goto(link)
+    shared.wait_until(f"document.getElementById('clock').textContent === '{clock}'")
+    page.get_by_role("button", name="Go on").wait_for()
+    page.wait_for_timeout(300)
+    after = page.evaluate(told)
+    assert sum(tile["frozen"] for tile in after) == 1
+    assert after == before
+
+
 def test_the_dialog_goes_by_keyboard_and_says_what_it_is(shared: Visit) -> None:
     assert Axe().run(shared.page).violations_count == 0
-    link = shared.page.input_value("#share-link")
-    assert "shape=digits/9" in link
     shared.page.keyboard.press("Space")  # does not let the run go on
     shared.page.keyboard.press("Escape")
     shared.page.locator("#share").wait_for(state="hidden")

@@ -272,3 +272,41 @@ def test_another_deed_in_the_past_begins_another_future(source: EmulatedSource) 
 def test_there_is_no_past_before_a_run(source: EmulatedSource) -> None:
     with pytest.raises(UsageError, match="nothing runs yet"):
         source.take(commands.Seek(0.0))
+
+
+def test_a_run_with_deeds_is_the_run_that_hands_made(source: EmulatedSource) -> None:
+    start = commands.Open(FOUR, spread_s=0.1, paused=True, seed=5)
+    source.take(start)
+    first = said(source, 4)
+    hands: tuple[commands.Hand, ...] = (
+        commands.Pull("tile-04"),
+        commands.Freeze("tile-02"),
+        commands.Noise(0.1),
+    )
+    for hand in hands:
+        source.take(hand)
+        first += said(source, 3)
+    source.take(commands.Seek(0.0))
+    deeds = tuple((time_s, hand) for time_s, hand in zip((0.2, 0.35, 0.5), hands, strict=True))
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True, seed=5, deeds=deeds))
+    told = of(source.advance(0.0), "deed")
+    assert [event["deed"]["do"] for event in told] == ["pull", "freeze", "noise"]
+    again = said(source, 13)
+    assert of(again, "raw") == of(first, "raw")
+    source.take(commands.Seek(0.3))
+    source.take(commands.Reset("tile-01"))
+    assert [event["deed"] for event in of(source.advance(0.0), "deed")] == [
+        {"do": "reset", "port": "tile-01"}
+    ]
+    source.take(commands.Step(1.0))
+    frozen = [event for event in of(source.advance(0.0), "raw") if "$ACK,2" in event["raw"]]
+    assert frozen == []  # that would have been in the future that was left
+
+
+def test_deeds_at_the_beginning_come_before_all(source: EmulatedSource) -> None:
+    cells = [list(cell) for cell in FOUR[:2]]
+    deeds = ((0.0, commands.Arrange(FOUR[:2])), (0.0, commands.Pull("tile-01")))
+    source.take(commands.Open(FOUR, paused=True, deeds=deeds))
+    events = source.advance(0.0)
+    assert of(events, "deed")[0]["deed"] == {"do": "arrange", "cells": cells}
+    assert [event["port"] for event in of(events, "place")] == ["tile-02"]

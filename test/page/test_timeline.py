@@ -59,6 +59,13 @@ def test_deeds_are_done_again_at_their_times_and_no_more_than_once() -> None:
     assert line.nearest(1.0) == (1.0, "put")
 
 
+def test_deeds_that_are_planned_are_done_until_a_hand_does_another() -> None:
+    line: Line = Timeline([(0.1, "one"), (0.3, "two")])
+    assert line.deeds_in(0.0, 1.0) == [(0.1, "one"), (0.3, "two")]
+    line.note(0.2, "other")
+    assert line.deeds_in(0.0, 1.0) == [(0.1, "one"), (0.2, "other")]
+
+
 def test_a_deed_in_the_past_begins_another_future() -> None:
     line = ran(1.0)
     line.note(0.8, "late")

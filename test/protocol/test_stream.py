@@ -18,6 +18,7 @@ EVENTS = {
     "cable": stream.cable_event(1.0, "tile-03", "E", whole=False),
     "raw": stream.raw_event(1.23456789, "tile-03", b"$ASK*\xff"),
     "open": stream.open_event(1.0, "tile-03", False, "no power"),
+    "deed": stream.deed_event(1.0, {"do": "pull", "port": "tile-03"}),
     "display": stream.display_event(1.0, "tile-03", 0x66, (5, 50, 30), "N-S-"),
     "frame": stream.frame_event(1.0, "tile-03", "E", b"\x01\x02"),
     "refused": stream.refused_event(0.0, "no tile lies there"),

@@ -54,6 +54,10 @@ MISTAKES: list[dict[str, Any]] = [
     {"do": "arrange", "cells": [[0, 1.5]]},
     {"do": "open", "cells": [[0, index] for index in range(-64, 64)] + [[1, index] for index in range(17)]},
     {"do": "freeze", "port": "tile-01", "on": 1},
+    {"do": "open", "cells": [[0, 0]], "deeds": [[1, 2]]},
+    {"do": "open", "cells": [[0, 0]], "deeds": [[-1, {"do": "pull", "port": "a"}]]},
+    {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "pace", "speed": 1}]]},
+    {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "pull"}]]},
     *({"do": "open", "cells": [[0, 0], [0, 1]], "faults": [fault]} for fault in [
         "fly", "loss", "loss=2", "cut", "cut=1@1", "loss=x", "off@3", "off@1:2-1", "reset@1:1-2", "cut@1N",
         "cut@1:x", "delay=5@1:1:2", "",
@@ -155,6 +159,20 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
     assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
     assert [event["time"] for event in jumps] == pytest.approx(went_to, abs=1e-4)
+
+
+def test_planned_deeds_are_told_alike(both: Any) -> None:
+    deeds = [
+        [0.31, {"do": "pull", "port": "tile-11"}],
+        [0.0, {"do": "put", "row": 9, "col": 9}],
+        [0.2, {"do": "freeze", "port": "tile-02"}],
+        [0.35, {"do": "arrange", "cells": EIGHT[:9]}],
+    ]
+    step = {"do": "step", "seconds": 0.1}
+    commands = [opened(3, cells=EIGHT, deeds=deeds), *[step] * 5, {"do": "seek", "seconds": 0.25}, step]
+    answers = both([*commands, {"do": "noise", "loss": 0.2}, *[step] * 2])
+    told = [event["deed"]["do"] for events in answers for event in events if "deed" in event]
+    assert told == ["put", "freeze", "pull", "arrange", "noise"]
 
 
 def test_mistakes_are_refused_alike(both: Any) -> None:

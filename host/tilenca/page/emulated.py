@@ -10,6 +10,7 @@ from tilenca.base.sides import SIDES
 from tilenca.emulator.arrangement import Arrangement, BoardMoment, Place
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.history import QUANTUM_S
 from tilenca.emulator.types import port_name
 from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
@@ -17,7 +18,8 @@ from tilenca.page.teller import Said, Teller
 from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.settings import Settings
-from tilenca.protocol.stream import StreamEvent, jump_event, pace_event, run_event, stream_event
+from tilenca.protocol.stream import StreamEvent, deed_event, jump_event, pace_event, run_event, stream_event
+from tilenca.protocol.stream_fields import MAX_PLACE, MOST_TILES
 from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.glyphs import looks_of
@@ -70,8 +72,8 @@ class EmulatedSource:
                     for one in self._drawings
                 ],
                 period_ms=self._defaults.period_ms if self._defaults else None,
-                most_tiles=commands.MOST_TILES,
-                most_place=commands.MAX_PLACE,
+                most_tiles=MOST_TILES,
+                most_place=MAX_PLACE,
             )
         ]
 
@@ -100,15 +102,16 @@ class EmulatedSource:
         if self._emulation is not None:
             self._events += self._teller.places()
 
-    def _lay_hands_on(self, command: commands.StreamCommand) -> None:
+    def _lay_hands_on(self, command: commands.Hand) -> None:
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
         self._do(command)
         self._timeline.note(self._array.time_s, command)
         self._keep()
         self._tell_pace()  # another future begins
+        self._events.append(deed_event(self._array.time_s, commands.told(command)))
 
-    def _do(self, command: commands.StreamCommand) -> None:
+    def _do(self, command: commands.Hand) -> None:
         """What a hand does, now or once more in a past that is run again."""
         board = self._board
         match command:
@@ -133,8 +136,8 @@ class EmulatedSource:
                 board.lose(loss)
 
     def _check_room(self, more: int) -> None:
-        if len(self._board.places) + more > commands.MOST_TILES:
-            raise UsageError(f"the board has {commands.MOST_TILES} tiles, which is all; take one out first")
+        if len(self._board.places) + more > MOST_TILES:
+            raise UsageError(f"the board has {MOST_TILES} tiles, which is all; take one out first")
 
     def _tile(self, port: str) -> int:
         """The tile of that port, which lies on the board."""
@@ -144,6 +147,7 @@ class EmulatedSource:
         raise UsageError(f"no tile {port} lies on the board")
 
     def _open(self, wanted: commands.Open) -> None:
+        deeds = [(round(time_s / QUANTUM_S) * QUANTUM_S, deed) for time_s, deed in wanted.deeds]
         faults = tuple(parse_fault(text) for text in wanted.faults)
         cells = sorted(wanted.cells)
         settings = EmulationSettings(boot_spread_s=wanted.spread_s, seed=wanted.seed, faults=faults)
@@ -154,9 +158,12 @@ class EmulatedSource:
         self._array = emulation.array
         self._board = Arrangement(emulation, cells)
         self._teller = Teller(self._array, self._board)
-        self._timeline: Timeline[_Moment, commands.StreamCommand] = Timeline()
+        self._timeline: Timeline[_Moment, commands.Hand] = Timeline(deeds)
         self._pace = Pace(wanted.speed, wanted.paused, wanted.until_s)
         self._events = [run_event(0.0, {"seed": wanted.seed, "shape": shape.name, "tiles": len(cells)})]
+        self._events += [deed_event(time_s, commands.told(deed)) for time_s, deed in deeds]
+        for _, deed in self._timeline.deeds_in(-QUANTUM_S, 0.0):
+            self._do(deed)
         self._look()
         self._keep()
 

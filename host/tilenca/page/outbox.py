@@ -8,6 +8,7 @@ from tilenca.protocol.stream import StreamEvent
 # Frames and refusals that wait; older ones give way.
 MOST_FRAMES = 256
 MOST_REFUSALS = 8
+MOST_DEEDS = 256
 # Batches that may be on their way, unseen.
 MOST_UNSEEN = 3
 
@@ -17,14 +18,14 @@ class Outbox:
 
     def __init__(self) -> None:
         self._waiting: dict[tuple[object, ...], StreamEvent] = {}
-        self._counters: dict[str, int] = {"frame": 0, "refused": 0}
+        self._counters: dict[str, int] = {"frame": 0, "refused": 0, "deed": 0}
         self._sent = self._seen = 0
 
     def put(self, events: Iterable[StreamEvent]) -> None:
         """Adds events, in their order; a newer one replaces the older one of the same thing."""
         for event in events:
             if "run" in event or "jump" in event:  # all before it is void
-                stays = ("stream", "refused") if "run" in event else ("stream", "refused", "run")
+                stays = ("stream", "refused") if "run" in event else ("stream", "refused", "run", "deed")
                 self._waiting = {key: old for key, old in self._waiting.items() if key[0] in stays}
             key = self._key(event)
             self._waiting.pop(key, None)
@@ -32,7 +33,7 @@ class Outbox:
 
     def _key(self, event: StreamEvent) -> tuple[object, ...]:
         port = event.get("port")
-        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS)):
+        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS), ("deed", MOST_DEEDS)):
             if kind in event:
                 self._counters[kind] += 1
                 return kind, self._counters[kind] % most

@@ -1,6 +1,7 @@
 """The past of a run: moments to go back to, and what hands did when. Owns no tiles."""
 
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -31,10 +32,16 @@ class Timeline(Generic[Moment, Deed]):
         end_s: the time that the run has reached; beyond it nothing is known.
     """
 
-    def __init__(self, every_s: float = EVERY_S, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(
+        self,
+        deeds: Iterable[tuple[float, Deed]] = (),
+        every_s: float = EVERY_S,
+        most_bytes: int = MOST_BYTES,
+    ) -> None:
+        """Nothing has run yet; `deeds`, in order of time, are to be done."""
         self._every_s, self._most_bytes = every_s, most_bytes
         self._kept: list[_Kept[Moment]] = []
-        self._deeds: list[tuple[float, Deed]] = []
+        self._deeds = list(deeds)
         self.end_s = 0.0
 
     # --- while it runs ---

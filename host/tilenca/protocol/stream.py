@@ -13,7 +13,20 @@ RAW_ENCODING = "latin-1"
 StreamEvent: TypeAlias = dict[str, Any]
 
 # What an event is about; each has exactly one of these keys.
-KINDS = ("stream", "run", "jump", "pace", "place", "cable", "raw", "open", "display", "frame", "refused")
+KINDS = (
+    "stream",
+    "run",
+    "jump",
+    "pace",
+    "place",
+    "cable",
+    "raw",
+    "open",
+    "deed",
+    "display",
+    "frame",
+    "refused",
+)
 
 
 def _event(time_s: float, **about: object) -> StreamEvent:
@@ -52,6 +65,11 @@ def place_event(time_s: float, port: str, place: tuple[int, int] | None) -> Stre
 def cable_event(time_s: float, port: str, side: str, whole: bool) -> StreamEvent:
     """The cable at a side is cut, or whole again; of the tile that is west or north of it."""
     return _event(time_s, port=port, side=side, cable="whole" if whole else "cut")
+
+
+def deed_event(time_s: float, command: Mapping[str, object]) -> StreamEvent:
+    """A hand does this at that time; all that it would have done later is void."""
+    return _event(time_s, deed=dict(command))
 
 
 def raw_event(time_s: float, port: str, raw: bytes) -> StreamEvent:

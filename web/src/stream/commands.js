@@ -6,6 +6,7 @@ import { SIDES } from "./sides.js";
 export const MAX_PLACE = 64;
 export const MOST_TILES = 144;
 const MOST_FAULTS = 32;
+const MOST_DEEDS = 200;
 const MAX_NAME = 64;
 const MAX_SPEED = 1024;
 const MIN_SPEED = 1e-5;
@@ -62,6 +63,24 @@ const cells = (value) => {
 };
 
 /** @type {Check} */
+const deeds = (value) => {
+  if (!Array.isArray(value) || value.length > MOST_DEEDS) return `must be a list of at most ${MOST_DEEDS} deeds`;
+  for (const deed of value) {
+    const isDeed = Array.isArray(deed) && deed.length === 2 && typeof deed[1] === "object" && deed[1] !== null;
+    if (!isDeed || Array.isArray(deed[1])) return "must be deeds, [seconds, command] each";
+    const wrong = number(0, MAX_SECONDS)(deed[0]);
+    if (wrong) return wrong;
+    try {
+      const { do: name } = checked(deed[1]);
+      if (!HANDS.includes(name)) return `must be commands that change something, and ${name} does not`;
+    } catch (error) {
+      return error instanceof Error ? error.message : String(error);
+    }
+  }
+  return "";
+};
+
+/** @type {Check} */
 const untilS = (value) => (value === null ? "" : number(0, MAX_SECONDS)(value));
 const speed = number(MIN_SPEED, MAX_SPEED, true);
 
@@ -70,6 +89,7 @@ const KINDS = {
   open: {
     cells: [cells], seed: [whole(0, Number.MAX_SAFE_INTEGER), 0], faults: [faults, []], spread_s: [number(0, 3600), 1],
     speed: [speed, 1], paused: [truth, false], until_s: [untilS, null],
+    deeds: [deeds, []],
   },
   pace: { speed: [speed], paused: [truth, false] },
   rest: { on: [truth] },
@@ -86,6 +106,9 @@ const KINDS = {
   noise: { loss: [number(0, 1)] },
   seen: { batch: [whole(0, Number.MAX_SAFE_INTEGER)] },
 };
+
+/** Those that change something. */
+const HANDS = ["put", "pull", "move", "arrange", "cut", "power", "freeze", "reset", "noise"];
 
 /**
  * The command with all its fields.

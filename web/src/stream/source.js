@@ -4,7 +4,7 @@ import { TilencaError } from "../module.js";
 import { Board } from "./board.js";
 import { MOST_TILES, checked } from "./commands.js";
 import { sorted } from "./faults.js";
-import { Pace } from "./pace.js";
+import { Pace, QUANTUM_S } from "./pace.js";
 import { SIDES } from "./sides.js";
 import { Teller, event, portName } from "./teller.js";
 import { Timeline } from "./timeline.js";
@@ -95,6 +95,7 @@ export class EmulatedSource {
     this.#timeline.note(this.#board.array.timeS, command);
     this.#keep(this.#board);
     this.#tellPace(); // another future begins
+    this.#tell(this.#board.array.timeS, { deed: command });
   }
 
   /** What a hand does, now or once more in a past that is run again. @param {Board} board @param {Command} command */
@@ -135,6 +136,10 @@ export class EmulatedSource {
 
   /** @param {Command} wanted */
   #open(wanted) {
+    /** @type {{ timeS: number, deed: Command }[]} */
+    const deeds = wanted.deeds.map((/** @type {[number, Command]} */ [timeS, deed]) =>
+      ({ timeS: Math.round(timeS / QUANTUM_S) * QUANTUM_S, deed: checked(deed) }));
+    deeds.sort((one, other) => one.timeS - other.timeS);
     /** @type {Place[]} */
     const cells = sorted(wanted.cells);
     const name = this.#nameOf(cells);
@@ -145,9 +150,11 @@ export class EmulatedSource {
     this.close();
     this.#board = board;
     this.#teller = new Teller(board);
-    this.#timeline = new Timeline();
+    this.#timeline = new Timeline(deeds);
     this.#pace = new Pace(wanted.speed, wanted.paused, wanted.until_s);
     this.#events = [event(0, { run: { seed: wanted.seed, shape: name, tiles: cells.length } })];
+    for (const { timeS, deed } of deeds) this.#tell(timeS, { deed });
+    for (const { deed } of this.#timeline.deedsIn(-QUANTUM_S, 0)) this.#do(board, deed);
     this.#look();
     this.#keep(board);
   }

@@ -12,9 +12,14 @@ export class Timeline {
   /** @type {{ timeS: number, moment: M, bytes: number }[]} */
   #kept = [];
   /** @type {{ timeS: number, deed: D }[]} */
-  #deeds = [];
+  #deeds;
   /** The time that the run has reached; beyond it nothing is known. */
   endS = 0;
+
+  /** Nothing has run yet. @param {readonly { timeS: number, deed: D }[]} [deeds] to be done, in order of time */
+  constructor(deeds = []) {
+    this.#deeds = [...deeds];
+  }
 
   /** How many moments begin at a time or before. @param {number} timeS */
   #before(timeS) {
