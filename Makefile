@@ -26,7 +26,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
-	imports types budgets sanitize docs format train bench sweep web page-bundle wheel clean
+	imports types budgets sanitize docs format train bench sweep report web page-bundle wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -119,6 +119,13 @@ sweep: setup-train ## measure dead tiles and lost messages at three sizes, into 
 	@$(TILENCA) sweep --axis loss=0:0.6:0.1 --axis dead=0,0.02,0.05,0.1,0.2 --axis size=drawn,7x6,12x10 --runs 100 \
 		--plot --json --out build/sweep >/dev/null
 	@$(TOOL) bench.sweep --table build/sweep --write docs/SWEEPS.md
+
+report: setup-train ## measure every claim again (half an hour of two cores), into docs/RESULTS.md and docs/results.html
+	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) report --out build/report
+	@cp build/report/RESULTS.md docs/RESULTS.md
+	@cp build/report/report.html docs/results.html
+	@cp build/report/images/results-*.svg docs/images/
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)

@@ -24,6 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
     "sweep": ("tilenca.commands.sweep", "measure over every combination of conditions, on many cores"),
+    "report": ("tilenca.commands.report", "measure every claim again, as a page with figures"),
     "plot": ("tilenca.commands.plot", "draw how training went, or a film of what tiles show"),
     "simulate": ("tilenca.commands.simulate", "run drawings on the firmware's core, many runs at once"),
     "export": ("tilenca.commands.export", "render a model into the firmware's C++ files"),

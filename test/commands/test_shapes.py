@@ -33,6 +33,20 @@ def test_the_json_says_what_the_contract_asks(capsys: pytest.CaptureFixture[str]
     assert "variants" not in report
 
 
+def test_variants_held_out_are_printed_as_a_file_that_can_be_evaluated(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "hands.toml"
+    file.write_text(run(capsys, "--vary", "2", "--held-out", "--toml", "--seed", "5"))
+    task = load_task(file)
+    assert task.labels == tuple("0123456789")
+    assert len(task.shapes) == 20
+    assert not {split_of(shape.rows) for shape in task.shapes} & {TRAINED}
+    for option in ("--toml", "--held-out"):
+        assert cli.main(["shapes", option]) == 2
+        assert "add --vary" in capsys.readouterr().err
+
+
 def test_variants_are_drawn_by_seed_and_are_those_of_training(capsys: pytest.CaptureFixture[str]) -> None:
     one, same, other = (
         json.loads(run(capsys, "--json", "--vary", "3", "--seed", seed))["variants"] for seed in "112"

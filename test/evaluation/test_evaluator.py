@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tilenca.base import paths
-from tilenca.evaluation.evaluator import CONVERGED_BY, DEAD, FAULTS, Evaluator, validate
+from tilenca.evaluation.evaluator import CONVERGED_BY, DEAD, FAULTS, Evaluator
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_training_task
@@ -67,10 +67,12 @@ def test_every_row_about_one_moment_says_what_the_other_runs_show(suite: Suite) 
     assert max(early) > 0, "after ten steps of the listing some runs are not of one mind yet"
 
 
-def test_every_row_is_told_as_soon_as_it_is_measured(suite: Suite) -> None:
-    only_drawn = replace(suite, sizes=(), damaged=(), unknown=(), larger=())
-    said: list[str] = []
-    metrics = validate(FastEngine(MODEL), only_drawn, 1, 1, said.append)
-    assert [line.split(", @")[0] for line in said] == [row["name"] for row in metrics["rows"]]
-    aimed = [row for row in metrics["rows"] if row["target"] is not None]
-    assert metrics["targets_held"] == f"{sum(row['holds'] for row in aimed)} of {len(aimed)}"
+def test_a_row_by_itself_is_the_row_of_the_table(suite: Suite) -> None:
+    suite = replace(suite, sizes=suite.sizes[:2], damaged=suite.damaged[:2], unknown=suite.unknown[:1])
+    engine = FastEngine(MODEL)
+    every = list(Evaluator(engine, suite, 2, 7).rows())
+    for row in every[:: max(1, len(every) // 12)]:
+        alone = list(Evaluator(engine, suite, 2, 7, [row.name]).rows())
+        assert row in alone
+        assert {other.name for other in alone} <= {other.name for other in every if row.name in other.name}
+    assert not list(Evaluator(engine, suite, 2, 7, ["no such row"]).rows())

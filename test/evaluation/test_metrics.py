@@ -10,9 +10,9 @@ from support.measurements import row
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
 from tilenca.evaluation.cases import Case
-from tilenca.evaluation.evaluator import validate
 from tilenca.evaluation.metrics import Runs, Target, measure, wilson
 from tilenca.evaluation.suites import Aims, make_suite
+from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import Shape

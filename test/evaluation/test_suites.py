@@ -1,9 +1,11 @@
 """What a model is asked: what training never saw, and what it was trained for."""
 
+from pathlib import Path
+
 from tilenca.base import paths
-from tilenca.evaluation.suites import Aims, Suite, make_suite
+from tilenca.evaluation.suites import MOST_DRAWN, Aims, Suite, make_suite
 from tilenca.shapes.batch import load_training_task
-from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.file import UNKNOWN, shape_table
 from tilenca.shapes.stretch import Rows, smallest
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, split_of
 from tilenca.training.recipes import RECIPES, aims_of
@@ -84,3 +86,34 @@ def test_a_tile_is_missing_at_every_size_once_in_new_pairs_and_once_in_others() 
         assert new.aimed
         assert all(split_of(shape.rows) == TRAINED for shape in old.drawings.shapes)
         assert all(split_of(shape.rows) == LAST for shape in new.drawings.shapes)
+
+
+def test_of_a_file_with_very_many_drawings_some_are_asked_by_the_seed(tmp_path: Path) -> None:
+    tops = (format(number, "09b").replace("0", ".").replace("1", "#") for number in range(1, 512))
+    combs = [shape_table("1", (top, "#" * 9)) for top in tops]
+    (tmp_path / "many.toml").write_text("vary = false\n" + "\n".join(combs))
+    (tmp_path / "few.toml").write_text("vary = false\n" + shape_table("7", ("###", "..#")))
+    task, sizes = load_training_task([tmp_path / "many.toml", tmp_path / "few.toml"], 1.0, 20)
+    suites = [make_suite(task, sizes, task.labels, Aims(), seed) for seed in (1, 1, 2)]
+    names = [case.name for case in suites[0].drawn]
+    assert names == [f"many.toml, {MOST_DRAWN} of its drawings", "few.toml"]
+    first, same, other = (suite.drawn[0].drawings.shapes for suite in suites)
+    assert first == same != other
+    assert len(set(first)) == MOST_DRAWN
+    assert [shape.label for shape in suites[0].drawn[1].drawings.shapes] == ["7"]
+    assert suites[0].dead == ()
+
+
+def test_files_that_are_never_trained_on_measure_the_model(tmp_path: Path) -> None:
+    (tmp_path / "new.toml").write_text("vary = false\n" + shape_table("7", ("#" * 8, *["." * 7 + "#"] * 8)))
+    first = shape_table("7", ("###", "..#")) + shape_table("1", ("#", "#", "#"))
+    (tmp_path / "mine.toml").write_text('vary = false\n[sizes]\nmeasured = ["new.toml"]\n' + first)
+    for stretch in (1.0, 10.0):
+        task, sizes = load_training_task([tmp_path / "mine.toml"], stretch, 20)
+        assert [source["file"] for source in task.sources] == ["mine.toml"], "not among those to train on"
+        (case,) = (
+            case
+            for case in make_suite(task, sizes, task.labels, Aims(stretch), 1).sizes
+            if case.name == "new.toml, never trained on"
+        )
+        assert (case.held_out, case.steps, len(case.drawings)) == (True, 100, 1)

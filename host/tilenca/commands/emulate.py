@@ -25,6 +25,7 @@ from tilenca.emulator.faults import parse as parse_fault
 from tilenca.emulator.hardware import UNPOWERED
 from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
+from tilenca.emulator.side_by_side import threads_of_each
 from tilenca.fleet.recording import Recorder
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
 from tilenca.shapes.file import Shape, Task, load_task
@@ -91,7 +92,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a fault with its place and time, such as loss=0.1 or cut@3-4:2-5; again for more. Kinds: "
         f"{', '.join(KINDS)}",
     )
-    add("--threads", type=whole(1, MAX_THREADS), default=1, metavar="N", help="threads for one shape (1)")
+    add(
+        "--threads",
+        type=whole(1, MAX_THREADS),
+        metavar="N",
+        help="threads for each shape (all processors have work)",
+    )
     add(
         "--eeprom",
         type=Path,
@@ -161,7 +167,7 @@ def run(args: argparse.Namespace) -> int:
         bootloader=_bootloader(args.bootloader),
         unpowered=args.unpowered,
         faults=tuple(args.fault),
-        threads=args.threads,
+        threads=args.threads or threads_of_each(len(shapes)),
         eeprom=args.eeprom,
     )
 

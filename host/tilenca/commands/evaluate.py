@@ -22,9 +22,10 @@ from tilenca.commands.arguments import (
 )
 from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
-from tilenca.evaluation.evaluator import CONVERGED_BY, validate
+from tilenca.evaluation.evaluator import CONVERGED_BY
 from tilenca.evaluation.metrics import answer_shares, convergence_times
 from tilenca.evaluation.suites import make_suite, recorded_aims
+from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
@@ -96,6 +97,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--exam", dest="suite", action="store_true", help=argparse.SUPPRESS
     )  # its name in 0.1
+    parser.add_argument(
+        "--row",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="of the suite, only rows with this in their name; again for more",
+    )
     add_condition_arguments(parser)
     parser.add_argument(
         "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
@@ -109,6 +117,8 @@ def run(args: argparse.Namespace) -> int:
     model = load_model(args.model)
     if args.suite:
         return _run_suite(args, model)
+    if args.row:
+        raise UsageError("--row chooses rows of the suite; add --suite")
     drawings = load_drawings(args.shapes, labels=model.labels)
     if args.size is not None:
         drawings = _at_size(drawings, args.size)
@@ -141,7 +151,12 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
     suite = make_suite(task, sizes, model.labels, aims, args.seed)
     say = (lambda _: None) if args.json else print
-    metrics = validate(FastEngine(model), suite, args.runs or RUNS["fast"], args.seed, say)
+    metrics = validate(FastEngine(model), suite, args.runs or RUNS["fast"], args.seed, say, args.row)
+    if not metrics["rows"]:
+        raise UsageError(
+            f"no row of the suite has {' or '.join(map(repr, args.row))} in its name; "
+            "leave --row out to see all"
+        )
     if args.json:
         print(json.dumps({"model": f"{model.model_id:04X}", "metrics": metrics}))
     else:

@@ -15,11 +15,12 @@ from tilenca.base.stdio import warn
 from tilenca.commands.arguments import number, seed, size, whole
 from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
 from tilenca.shapes.batch import Drawings, load_training_task
-from tilenca.shapes.file import Shape, load_task
+from tilenca.shapes.file import Shape, load_task, shape_table
 from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
 from tilenca.shapes.image import cropped, drawing_of, pooled, read_image
 from tilenca.shapes.sizes import LARGEST, Size
 from tilenca.shapes.stretch import Rows
+from tilenca.shapes.variant import LAST, TRAINED
 from tilenca.views.drawings import half_blocks, side_by_side
 
 IMAGE_ROWS = 10
@@ -45,6 +46,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="draw N variants of every class too, as training draws them (8)",
     )
+    parser.add_argument(
+        "--held-out", action="store_true", help="with --vary: variants of forms that training never sees"
+    )
+    parser.add_argument("--toml", action="store_true", help="with --vary: print the variants as a shape file")
     parser.add_argument(
         "--seed", type=seed, default=1, metavar="N", help="same seed, same variants (default 1)"
     )
@@ -77,10 +82,17 @@ def run(args: argparse.Namespace) -> int:
     """Draws, and says what to know before training."""
     if args.image is not None:
         return _image(args)
+    if (args.held_out or args.toml) and not args.vary:
+        raise UsageError("--held-out and --toml are about variants; add --vary")
     task = load_task(args.shapes)
     drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
-    variants = _variants(drawings, args.vary, args.seed, args.shapes) if args.vary else {}
+    variants = _variants(drawings, args) if args.vary else {}
     problems = _problems(task.labels)
+    if args.toml:
+        which = "of forms held out from training" if args.held_out else "as training draws them"
+        print(f"# Variants of {args.shapes.name}, {which}, seed {args.seed}.\n\nvary = false\n")
+        print("\n".join(shape_table(label, rows) for label, some in variants.items() for rows in some))
+        return 0
     if args.json:
         report: dict[str, Any] = {"shapes": [_entry(shape) for shape in task.shapes], "problems": problems}
         if args.vary:
@@ -124,7 +136,7 @@ def _image(args: argparse.Namespace) -> int:
     if dropped:
         warn(f"note: {dropped} tiles with ink do not touch the others and are left out; try a smaller --ink")
     warn(f"{grid.count('#')} tiles in {len(rows)} rows and {len(rows[0])} columns; add this to a shape file:")
-    print(f'[[shape]]\nlabel = "{args.label}"\ngrid = """\n{grid}\n"""')
+    print(shape_table(args.label, rows), end="")
     return 0
 
 
@@ -143,12 +155,17 @@ def _entry(shape: Shape) -> dict[str, Any]:
     }
 
 
-def _variants(drawings: Drawings, count: int, number: int, path: Path) -> dict[str, list[tuple[str, ...]]]:
-    """Some variants of every class, as training draws them."""
+def _variants(drawings: Drawings, args: argparse.Namespace) -> dict[str, list[Rows]]:
+    """Some variants of every class, as training draws them or of forms that it never sees."""
     if drawings.variants is None:
-        raise UsageError(f"{path}: says vary = false, so its classes are just its drawings; leave --vary out")
-    random = np.random.default_rng(number)
-    return {label: drawings.variants.some(label, count, random, path) for label in drawings.labels}
+        raise UsageError(
+            f"{args.shapes}: says vary = false, so its classes are just its drawings; leave --vary out"
+        )
+    random, split = np.random.default_rng(args.seed), LAST if args.held_out else TRAINED
+    return {
+        label: drawings.variants.some(label, args.vary, random, args.shapes, split)
+        for label in drawings.labels
+    }
 
 
 def _problems(labels: tuple[str, ...]) -> list[str]:

@@ -14,6 +14,7 @@ from rich.live import Live
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.processors import processors
 from tilenca.commands.arguments import (
     add_condition_arguments,
     add_model_argument,
@@ -31,7 +32,7 @@ from tilenca.shapes.glyphs import DARK_LOOK, look_of_class
 from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.rollout_library import DARK
-from tilenca.simulator.simulator import Simulator, processors
+from tilenca.simulator.simulator import Simulator
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.table import table
 from tilenca.views.tiles import Picture, beside
@@ -167,6 +168,10 @@ def _report(
         "cells_right": round(float(trajectory.right[-1].mean()), 6),
         "total_agreement": round(float(trajectory.agreed[-1].mean()), 6),
         "steps_to_agreement": convergence_times(trajectory.converged_at),
+        "by_step": {
+            "cells_right": np.round(trajectory.right.mean(axis=1, dtype=np.float64), 6).tolist(),
+            "total_agreement": np.round(trajectory.agreed.mean(axis=1), 6).tolist(),
+        },
     }
     return {
         "shape": name,

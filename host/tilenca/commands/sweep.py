@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, InterruptedRunError, UsageError
+from tilenca.base.processors import processors
 from tilenca.base.project import build_remedy, firmware_image, place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import (
@@ -21,7 +22,6 @@ from tilenca.commands.arguments import (
     count,
     seed,
 )
-from tilenca.simulator.simulator import processors
 from tilenca.sweep.axes import AXES, EMULATOR, ENGINES, EXAMPLE, FAST, parse_axis, text_of
 from tilenca.views.progress import show_bars
 from tilenca.views.table import table

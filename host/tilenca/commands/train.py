@@ -121,7 +121,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
     """Trains all seeds; returns their jobs, whose checkpoints hold the results."""
-    from tilenca.simulator.simulator import processors
+    from tilenca.base.processors import processors
     from tilenca.training.runner import Job, train_side_by_side
     from tilenca.training.trainer import Config
     from tilenca.views.training import show_training
@@ -170,7 +170,7 @@ def _measured(
         metadata: of the model.
         out: the model's folder.
     """
-    from tilenca.evaluation.evaluator import validate
+    from tilenca.evaluation.validation import validate
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.results import Result
     from tilenca.training.trainer import model_of

@@ -1,21 +1,30 @@
 """Runs several independent emulations at once."""
 
-import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
-WORKERS = 2  # a shape may have threads of its own besides
+from tilenca.base.processors import processors
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 
+def at_once(jobs: int) -> int:
+    """How many of so many jobs run at once, 1 at least."""
+    return max(1, min(jobs, processors()))
+
+
+def threads_of_each(jobs: int) -> int:
+    """How many threads each of so many jobs may have, so that all processors have work."""
+    return processors() // at_once(jobs)
+
+
 def run_side_by_side(
     run: Callable[[Job, threading.Event], Result], jobs: Sequence[Job]
 ) -> Iterator[tuple[Job, Result]]:
-    """Runs all jobs on a few threads.
+    """Runs all jobs, as many at once as there are processors.
 
     Args:
         run: runs one job; it must raise soon after the event is set, which stops all jobs.
@@ -28,7 +37,7 @@ def run_side_by_side(
         Exception: `run` raised it; the first failure ends all.
     """
     stopped = threading.Event()
-    with ThreadPoolExecutor(min(WORKERS, os.cpu_count() or 1)) as pool:
+    with ThreadPoolExecutor(at_once(len(jobs))) as pool:
         try:
             yield from zip(jobs, pool.map(lambda job: run(job, stopped), jobs), strict=True)
         except BaseException:

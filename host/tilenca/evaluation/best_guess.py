@@ -124,7 +124,8 @@ def _choices(cuts: Sequence[Cut], group: Mapping[Rows, list[str]]) -> Iterator[t
         yield tuple(answers.values())
 
 
-def guessed_share(shapes: Sequence[Shape], dead: float, tries: int, random: np.random.Generator) -> float:
+@lru_cache(maxsize=16)
+def guessed_share(shapes: tuple[Shape, ...], dead: float, tries: int, seed: int) -> float:
     """The share of runs with dead tiles in which all pieces name their drawing by guessing the likeliest.
 
     A piece knows itself and that its neighbours are dead or absent, and nothing about other pieces.
@@ -133,8 +134,9 @@ def guessed_share(shapes: Sequence[Shape], dead: float, tries: int, random: np.r
         shapes: the drawings, each as likely as any other.
         dead: the share of dead tiles, 0..1; each is dead by itself, and at least one lives.
         tries: runs to draw.
-        random: the only source of chance.
+        seed: of the dead tiles.
     """
+    random = np.random.default_rng(seed)
     guesses: dict[Rows, str] = {}
     right = 0
     for _ in range(tries):

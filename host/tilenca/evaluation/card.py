@@ -7,6 +7,7 @@ from tilenca.model.file import Model
 
 # Recipes have a library since forms are held out.
 SPLIT_BY_FORM = "New pairs and drawings of no class had no form in common with those that did."
+CHOSEN = "Held-out sizes helped to choose when to stop, with other runs than these. "
 NOT_SPLIT = (
     "This model was trained before drawings were held out by form: of the new pairs and the drawings of no "
     "class some may have been trained, at this size or another."
@@ -18,7 +19,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
 
     Args:
         model: the model.
-        metrics: what `tilenca.evaluation.evaluator.validate` returned for it.
+        metrics: what `tilenca.evaluation.validation.validate` returned for it.
     """
     size, metadata = model.dimensions, model.metadata
     files = ", ".join(f"`{source['file']}`" for source in metadata["sources"])
@@ -60,8 +61,8 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "clocks: each has a fixed phase, a period up to 1 % off and 0.1 to 0.9 periods of latency, sends its "
         "seed when it is switched on, and updates for the first time one period later. All are switched on "
         "within 10 periods; steps count from the last one, or from the last change. Intervals are Wilson's, "
-        "for these drawings. A target of 1.000 holds where the share rounds to 1.000. Held-out sizes helped "
-        "to choose when to stop, with other runs than these. "
+        "for these drawings. A target of 1.000 holds where the share rounds to 1.000. "
+        + (CHOSEN if metadata["recipe"]["check_every"] else "")
         + (SPLIT_BY_FORM if "library" in metadata["recipe"] else NOT_SPLIT)
         + " To measure it again:",
         "",

@@ -1,9 +1,9 @@
 """Measures a trained model: the same table of measurements for every recipe, on the firmware's own core."""
 
-from collections.abc import Callable, Iterator, Mapping
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,6 @@ CLOCK = Conditions("clock")
 AT_ONCE = Way("at once")
 ORDERS: tuple[Order, ...] = ("adding first", "mixed", "removing first")
 SLOW_WAYS = tuple(Way(order, between) for order in ORDERS for between in (1, 15, 40))
-Say = Callable[[str], None]
 DEAD = "any one tile dead, the others asked"
 # The faults to measure: name, kind, first step, step of its end, and the kind of the target.
 FAULTS: tuple[tuple[str, FaultKind, int, int | None, str | None], ...] = (
@@ -51,12 +50,13 @@ class Evaluator:
         engine: the model's.
         suite: the cases to measure.
         runs: runs of each drawing; longevity takes a fifth of them over 20 steps for each.
-        seed: of the random generator.
+        seed: of all chance. Every row has its own, so that it is the same alone and in the table.
+        only: texts of which a row's name must have one; none: all rows.
     """
 
-    def __init__(self, engine: Engine, suite: Suite, runs: int, seed: int) -> None:
+    def __init__(self, engine: Engine, suite: Suite, runs: int, seed: int, only: Sequence[str] = ()) -> None:
         self.engine, self.suite, self.runs = engine, suite, runs
-        self.random = np.random.default_rng(seed)
+        self._seed, self._only = seed, tuple(only)
 
     def short_rows(self) -> Iterator[Measurement]:
         """The measurements during training: the clocks only, and nothing that takes long."""
@@ -80,29 +80,33 @@ class Evaluator:
     def agreement(self, schedules: Mapping[ScheduleKind, str] = SCHEDULES) -> Iterator[Measurement]:
         """The files' drawings on all schedules, the first file's time to converge, and larger drawings."""
         for case in self.suite.drawn:
-            for schedule, name in schedules.items():
-                runs = self._run(case, Conditions(schedule), *MARKS)
-                for mark in MARKS:
+            for schedule, way in schedules.items():
+                name, converged = f"{case.name}, {way}", f"{case.name}, converged"
+                timed = case is self.suite.drawn[0] and schedule == "clock" and self._wanted(converged)
+                if not (timed or self._wanted(name)):
+                    continue
+                runs = self._run(name, case, Conditions(schedule), *MARKS)
+                for mark in MARKS if self._wanted(name) else ():
                     target = target_of(case.kind) if mark > MARKS[0] else None
-                    yield measure("drawings", f"{case.name}, {name}", runs, mark, target)
-                if case is self.suite.drawn[0] and schedule == "clock":
-                    yield from _convergence(runs)
-        for case in self.suite.larger:
-            runs = self._run(case, CLOCK, case.steps)
+                    yield measure("drawings", name, runs, mark, target)
+                if timed:
+                    yield from _convergence(converged, runs)
+        for case in self._those(self.suite.larger):
+            runs = self._run(case.name, case, CLOCK, case.steps)
             yield measure("sizes", case.name, runs, case.steps, target_of(case.kind))
 
     def varied(self) -> Iterator[Measurement]:
         """Drawings by another hand: variants of held-out forms."""
-        if (case := self.suite.varied) is not None:
-            runs = self._run(case, CLOCK, case.steps, each=max(2, self.runs // 50))
+        for case in self._those([] if self.suite.varied is None else [self.suite.varied]):
+            runs = self._run(case.name, case, CLOCK, case.steps, each=max(2, self.runs // 50))
             yield measure("varied", case.name, runs, case.steps, _target_if_aimed(case))
 
     def sizes(self) -> Iterator[Measurement]:
         """Other sizes."""
-        for case in self.suite.sizes:
+        for case in self._those(self.suite.sizes):
             many = case.held_out and case.steps <= VERY_LARGE_STEPS
             each = self.runs if many else max(2, self.runs // 25)
-            runs = self._run(case, CLOCK, case.steps, each=each)
+            runs = self._run(case.name, case, CLOCK, case.steps, each=each)
             yield measure("sizes", case.name, runs, case.steps, _target_if_aimed(case))
 
     def disturbed(self) -> Iterator[Measurement]:
@@ -112,11 +116,12 @@ class Evaluator:
             ("20 % of the messages lost, read as zero", Conditions("clock", loss=0.2, lost="zero")),
             ("50 % of the messages lost, last one held", Conditions("clock", loss=0.5, lost="held")),
         ):
-            runs = self._run(drawn, conditions, CONVERGED_BY)
-            yield measure("lost", name, runs, CONVERGED_BY, target_of("lost"))
-        for case in self.suite.damaged:
+            if self._wanted(name):
+                runs = self._run(name, drawn, conditions, CONVERGED_BY)
+                yield measure("lost", name, runs, CONVERGED_BY, target_of("lost"))
+        for case in self._those(self.suite.damaged):
             each = max(2, 10 * self.runs // len(case.drawings))
-            runs = self._run(case, CLOCK, case.steps, each=each)
+            runs = self._run(case.name, case, CLOCK, case.steps, each=each)
             yield measure("damaged", case.name, runs, case.steps, _target_if_aimed(case))
         yield from self.dead()
         large = [n for n, size in enumerate(drawn.drawings.sizes) if size > 1]
@@ -127,10 +132,13 @@ class Evaluator:
         """One tile that is dead, stuck, or away for a while."""
         chosen = self._every_drawing(case, self.runs)
         for name, kind, begin, end, target in FAULTS:
-            fault = Fault(kind, self.random.integers(case.drawings.sizes[chosen]), begin, end)
+            if not self._wanted(name):
+                continue
+            tile = self._chance(f"{name}, which tile").integers(case.drawings.sizes[chosen])
+            fault = Fault(kind, tile, begin, end)
             changed_at = begin if end is None else end
             mark = changed_at + CONVERGED_BY
-            runs = self._run(case, Conditions("clock", fault=fault), mark)
+            runs = self._run(name, case, Conditions("clock", fault=fault), mark)
             row = measure(
                 "faults", name, runs, mark, None if target is None else target_of(target), changed_at
             )
@@ -138,12 +146,12 @@ class Evaluator:
 
     def dead(self) -> Iterator[Measurement]:
         """Many dead tiles: thick strokes hold together, and pieces of thin ones can only guess."""
-        for case in self.suite.dead:
-            runs = self._run(case, Conditions("clock", dead=case.dead), case.steps)
+        for case in self._those(self.suite.dead):
+            runs = self._run(case.name, case, Conditions("clock", dead=case.dead), case.steps)
             if case.kind in TARGETS:
                 yield measure("dead", case.name, runs, case.steps, _target_if_aimed(case))
                 continue
-            best = round(guessed_share(case.drawings.shapes, case.dead, GUESSES, self.random), 5)
+            best = round(guessed_share(case.drawings.shapes, case.dead, GUESSES, self._seed), 5)
             target = Target(round(best - BELOW_BEST, 5)) if case.aimed else None
             row = measure("dead", case.name, runs, case.steps, target)
             yield replace(row, best=best)
@@ -151,8 +159,9 @@ class Evaluator:
     def agreeing(self) -> Iterator[Measurement]:
         """Any drawing: a run is right if all tiles show one answer, or for a class that one or the dash."""
         labels = self.suite.drawn[0].drawings.labels
-        for case in self.suite.agreeing:
-            runs = self._run(case, CLOCK, case.steps, each=max(2, 10 * self.runs // len(case.drawings)))
+        for case in self._those(self.suite.agreeing):
+            each = max(2, 10 * self.runs // len(case.drawings))
+            runs = self._run(case.name, case, CLOCK, case.steps, each=each)
             given, own = runs.answers[case.steps], case.drawings.classes[runs.chosen]
             right = given >= 0
             if case.kind == "one tile too many":
@@ -164,9 +173,9 @@ class Evaluator:
 
     def unknown(self) -> Iterator[Measurement]:
         """Drawings of no class: a run is right if every tile shows the dash."""
-        for case in self.suite.unknown:
+        for case in self._those(self.suite.unknown):
             each = max(2, 10 * self.runs // len(case.drawings))
-            runs = self._run(case, CLOCK, case.steps, each=each)
+            runs = self._run(case.name, case, CLOCK, case.steps, each=each)
             yield measure("unknown", case.name, runs, case.steps, _target_if_aimed(case))
 
     def changes(self, one_by_one: bool = True) -> Iterator[Measurement]:
@@ -180,32 +189,51 @@ class Evaluator:
             *((drawn, way, "tile by tile") for way in SLOW_WAYS if one_by_one),
             *((case, AT_ONCE, "larger switch") for case in self.suite.larger),
         ):
-            each = max(1, self.runs // (10 if way is AT_ONCE else 40))
-            changed = rebuild(self.engine, case.drawings, each, CONVERGED_BY, case.steps, self.random, way)
+            name = f"{case.name}, changes to every other class{_way_name(way)}"
+            if not self._wanted(name):
+                continue
+            each, random = max(1, self.runs // (10 if way is AT_ONCE else 40)), self._chance(name)
+            changed = rebuild(self.engine, case.drawings, each, CONVERGED_BY, case.steps, random, way)
             if changed is not None:
-                name = f"{case.name}, changes to every other class{_way_name(way)}"
                 runs = Runs(case, changed.chosen, changed.trajectory, {case.steps: changed.answers})
                 yield measure("changes", name, runs, case.steps, target_of(target))
 
     def longevity(self) -> Iterator[Measurement]:
         """Long runs: all right after 1000 steps, and without a regression after convergence."""
         drawn = self.suite.drawn[0]
-        runs = self._run(drawn, CLOCK, LONG, each=max(1, self.runs // 5))
         name = f"{drawn.name}, {SCHEDULES['clock']}"
-        yield measure("longevity", name, runs, LONG, target_of("long"))
+        if self._wanted(name):
+            runs = self._run(f"{name}, long", drawn, CLOCK, LONG, each=max(1, self.runs // 5))
+            yield measure("longevity", name, runs, LONG, target_of("long"))
         steps = max(LEAST_LASTING, 20 * self.runs)
         for case in (self.suite.drawn[0], *self.suite.larger[-1:]):
-            each = max(1, -(-self.runs // (5 * len(case.drawings))))
-            runs = self._run(case, CLOCK, case.steps + steps, each=each)
-            always = Trajectory(runs.trajectory.right[case.steps - 1 :].min(axis=0, keepdims=True))
             name = f"{case.name}, no regression in {steps} more steps"
+            if not self._wanted(name):
+                continue
+            each = max(1, -(-self.runs // (5 * len(case.drawings))))
+            runs = self._run(name, case, CLOCK, case.steps + steps, each=each)
+            always = Trajectory(runs.trajectory.right[case.steps - 1 :].min(axis=0, keepdims=True))
             row = measure("longevity", name, replace(runs, trajectory=always), 1, target_of("longevity"))
             yield replace(row, steps=case.steps + steps, convergence=None)
 
-    def _run(self, case: Case, conditions: Conditions, *marks: int, each: int | None = None) -> Runs:
+    def _wanted(self, name: str) -> bool:
+        return not self._only or any(text in name for text in self._only)
+
+    def _those(self, cases: Iterable[Case]) -> Iterator[Case]:
+        """The cases whose rows are wanted."""
+        return (case for case in cases if self._wanted(case.name))
+
+    def _chance(self, name: str) -> np.random.Generator:
+        """The chance of a row."""
+        return np.random.default_rng((self._seed, zlib.crc32(name.encode())))
+
+    def _run(
+        self, name: str, case: Case, conditions: Conditions, *marks: int, each: int | None = None
+    ) -> Runs:
         """Runs every drawing of a case, `each` times or as often as the evaluator does.
 
         Args:
+            name: of the row, whose chance the runs have.
             case: the drawings.
             conditions: of all runs.
             marks: the steps after which all tiles are asked for their answer, ascending; the last one ends
@@ -213,7 +241,7 @@ class Evaluator:
             each: how often; None: as often as the evaluator does.
         """
         chosen = self._every_drawing(case, self.runs if each is None else each)
-        simulator = Simulator(self.engine, case.drawings, chosen, conditions, self.random)
+        simulator = Simulator(self.engine, case.drawings, chosen, conditions, self._chance(name))
         parts, answers = [], {}
         for before, mark in pairwise((0, *marks)):
             parts.append(simulator.run(mark - before).right)
@@ -231,11 +259,10 @@ def _way_name(way: Way) -> str:
     return f", {way.order}, a tile every {way.between} update{'s' if way.between > 1 else ''}"
 
 
-def _convergence(runs: Runs) -> Iterator[Measurement]:
+def _convergence(name: str, runs: Runs) -> Iterator[Measurement]:
     """The shares of the runs that have converged within certain numbers of steps."""
     for steps in CONVERGENCE_STEPS:
         soon = Trajectory((runs.trajectory.converged_at <= steps).astype(np.float32)[None])
-        name = f"{runs.case.name}, converged"
         row = measure(
             "convergence", name, replace(runs, trajectory=soon), 1, target_of(f"converged in {steps}")
         )
@@ -244,30 +271,3 @@ def _convergence(runs: Runs) -> Iterator[Measurement]:
 
 def _target_if_aimed(case: Case) -> Target | None:
     return target_of(case.kind) if case.aimed else None
-
-
-def validate(engine: Engine, suite: Suite, runs: int, seed: int, say: Say = lambda _: None) -> dict[str, Any]:
-    """Measures a model.
-
-    Args:
-        engine: the model's.
-        suite: the cases to measure.
-        runs: runs of each drawing.
-        seed: of the random generator.
-        say: called with each row as soon as it is measured.
-
-    Returns:
-        Plain values for metrics.json: `rows` as of `Measurement`, and `shortfall`, the sum over all rows.
-    """
-    rows = []
-    for row in Evaluator(engine, suite, runs, seed).rows():
-        say(row.text())
-        rows.append(row)
-    return {
-        "runs_per_drawing": runs,
-        "seed": seed,
-        "rows": [row.as_json() for row in rows],
-        "targets_held": f"{sum(r.holds for r in rows if r.target is not None)} of "
-        f"{sum(r.target is not None for r in rows)}",
-        "shortfall": round(sum(row.shortfall for row in rows), 5),
-    }

@@ -25,6 +25,7 @@ from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
 FEWEST = 10  # drawings of no class of which a target is asked
+MOST_DRAWN = 200  # drawings of a file up to which all are measured, and else so many of them
 INDEXED = 600  # variants that drawings of no class are compared with
 VARIANT_TRIES = 300  # in a row without a new one
 # Sizes at which a tile is missing, beside the files' own, where the task has them.
@@ -96,20 +97,20 @@ def recorded_aims(model: Model) -> Aims:
 def make_suite(
     task: Drawings, sizes: Sizes, labels: tuple[str, ...], aims: Aims, seed: int, split: str = LAST
 ) -> Suite:
-    """Makes the suite of a task.
+    """Makes the suite of a task; of files with thousands of drawings it asks some, by the seed.
 
     Args:
         task: the drawings of its files.
         sizes: of the task.
         labels: the model's.
         aims: of its training.
-        seed: of the unknown drawings and of the variants.
+        seed: of the unknown drawings, of the variants, and of those that are asked of very many.
         split: which held-out forms to ask: those for `CHOOSING` a model, or those for the `LAST` measurement.
     """
-    task = replace(task, labels=labels)
+    task, shortened = _shortened(replace(task, labels=labels), seed)
     first = task.group(0)
     drawn = tuple(
-        Case("drawn", source["file"], task.of(task.group(number)), SHORT_STEPS)
+        Case("drawn", source["file"] + shortened.get(number, ""), task.of(task.group(number)), SHORT_STEPS)
         for number, source in enumerate(task.sources)
     )
     aimed = sizes.within(task.largest, aims.stretch)
@@ -120,9 +121,27 @@ def make_suite(
         tuple(unknown_cases(task, first, aims, seed, split)) if UNKNOWN in labels else (),
         tuple(_larger(task, first, aimed)),
         varied_case(task, aims, seed, split),
-        tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
+        () if shortened else tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
         tuple(agreeing_cases(task, first, aimed, seed)),
     )
+
+
+def _shortened(task: Drawings, seed: int) -> tuple[Drawings, dict[int, str]]:
+    """The task with some drawings of each file that has very many, and what to call those files."""
+    random = np.random.default_rng(seed)
+    kept: list[int] = []
+    shortened = {}
+    for number in range(len(task.sources)):
+        mine = np.flatnonzero(np.array(task.groups) == number)
+        if len(mine) > MOST_DRAWN:
+            mine = np.sort(random.permutation(mine)[:MOST_DRAWN])
+            shortened[number] = f", {MOST_DRAWN} of its drawings"
+        kept += mine.tolist()
+    if not shortened:
+        return task, {}
+    shapes = tuple(task.shapes[number] for number in kept)
+    groups = tuple(task.groups[number] for number in kept)
+    return replace(task, shapes=shapes, groups=groups), shortened
 
 
 def varied_case(task: Drawings, aims: Aims, seed: int, split: str) -> Case | None:
@@ -154,9 +173,10 @@ def _size_cases(task: Drawings, first: Sequence[Shape], sizes: Sizes, aimed: Siz
     new = [*sizes.held_out] if trained else [*_larger_sizes(task, sizes)[:1], *sizes.held_out]
     most = max((*aimed.trained, *aimed.more), default=(0, 0), key=lambda size: size[0] * size[1])
     reach = 2 if aimed.more else 1.5
-    for path in sizes.drawn:
+    for path in (*sizes.drawn, *sizes.measured):
         drawings = load_drawings([path], labels=task.labels)
-        yield Case("held out", f"{path.name}, never trained on", drawings, 60, held_out=True, aimed=False)
+        steps = SHORT_STEPS if path in sizes.drawn else steps_for(drawings.largest)
+        yield Case("held out", f"{path.name}, never trained on", drawings, steps, held_out=True, aimed=False)
     trainable = chain(task.shapes, *at_sizes(first, (*aimed.trained, *aimed.more)))
     seen = {shape.rows for shape in trainable}
     for size in new:

@@ -258,3 +258,9 @@ def _table_lines(text: str) -> Iterator[tuple[int, int]]:
             grid = number + 1 if opening["quotes"] and not opening["row"] else number
     if header:
         yield header, grid
+
+
+def shape_table(label: str, rows: Sequence[str]) -> str:
+    """A drawing as a table of a shape file."""
+    grid = "\n".join(rows)
+    return f'[[shape]]\nlabel = "{label}"\ngrid = """\n{grid}\n"""\n'

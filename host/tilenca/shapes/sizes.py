@@ -6,6 +6,7 @@ to = "12x10"                     # to here, and trained on
 more = ["15x13"]                 # and to these
 held_out = ["8x5", "20x16"]      # but not to these: they measure a model on new sizes
 drawn = ["digits-3x3.toml"]      # files with the same classes, drawn by hand, beside this one
+measured = ["other-hands.toml"]  # files that are never trained on: they measure a model on new drawings
 """
 
 import re
@@ -19,7 +20,7 @@ from tilenca.base.suggest import did_you_mean
 Size = tuple[int, int]  # rows, columns
 
 LARGEST = 100
-KEYS = ("from", "to", "more", "held_out", "drawn")
+KEYS = ("from", "to", "more", "held_out", "drawn", "measured")
 _SIZE = re.compile(r"(\d{1,3})x(\d{1,3})")
 
 
@@ -32,12 +33,14 @@ class Sizes:
         more: single larger ones, which are not measured.
         held_out: sizes kept for measuring.
         drawn: files of drawings at other sizes.
+        measured: files of drawings that are never trained on.
     """
 
     trained: tuple[Size, ...] = ()
     more: tuple[Size, ...] = ()
     held_out: tuple[Size, ...] = ()
     drawn: tuple[Path, ...] = ()
+    measured: tuple[Path, ...] = ()
 
     def within(self, size: Size, factor: float) -> "Sizes":
         """Those of at most `factor` times as many rows and columns as `size`; none for a factor of 1."""
@@ -48,7 +51,7 @@ class Sizes:
         trained, more, held_out = (
             tuple(filter(fits, part)) for part in (self.trained, self.more, self.held_out)
         )
-        return Sizes(trained, more, held_out, self.drawn)
+        return Sizes(trained, more, held_out, self.drawn, self.measured)
 
 
 def size_name(size: Size) -> str:
@@ -95,14 +98,16 @@ def read_sizes(path: Path, table: object) -> Sizes:
             for columns in range(least[1], most[1] + 1)
             if (rows, columns) not in held_out
         ]
-    drawn = tuple(path.parent / name for name in _texts(path, table, "drawn"))
+    drawn, measured = (
+        tuple(path.parent / name for name in _texts(path, table, key)) for key in ("drawn", "measured")
+    )
     more = tuple(read_size(path, "sizes", "more", text) for text in _texts(path, table, "more"))
     for size in more:
         if size in held_out:
             raise UsageError(
                 f"{path}: [sizes] {size_name(size)} is in more and in held_out; take it out of one"
             )
-    return Sizes(tuple(trained), more, held_out, drawn)
+    return Sizes(tuple(trained), more, held_out, drawn, measured)
 
 
 def _texts(path: Path, table: dict[str, object], key: str) -> Sequence[str]:

@@ -90,21 +90,24 @@ class Variants:
                 return Variant(label, rows, split, max(pen)) if split_of(rows) == split else None
         return None
 
-    def some(self, label: str, count: int, random: np.random.Generator, path: Path) -> list[Rows]:
-        """Different variants of a class, as training draws them; fewer where hardly a new one turns up.
+    def some(
+        self, label: str, count: int, random: np.random.Generator, path: Path, split: str = TRAINED
+    ) -> list[Rows]:
+        """Different variants of a class; fewer where hardly a new one turns up.
 
         Args:
             label: the class.
             count: how many.
             random: the only source of chance.
             path: the file of the class.
+            split: the side of the split, see `draw`.
 
         Raises:
             UsageError: none can be drawn; the message names the file, the class and the remedy.
         """
         found: dict[Rows, None] = {}
         for _ in range(MOST_DRAWS * count):
-            variant = self.draw(label, TRAINED, random)
+            variant = self.draw(label, split, random)
             if variant is not None:
                 found.setdefault(variant.rows)
             if len(found) == count:

@@ -6,13 +6,13 @@ engine, such as tensors (`tilenca.training.float_engine`), follows the same sche
 (`numpy_rollout`).
 """
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.base.processors import processors
 from tilenca.shapes.batch import Drawings
 from tilenca.simulator.chance import draw_setup
 from tilenca.simulator.conditions import Conditions, Rebuilding
@@ -147,8 +147,3 @@ class Simulator:
     def updates(self) -> int:
         """The number of cell updates computed in all."""
         return self._rollout.updates
-
-
-def processors() -> int:
-    """The number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

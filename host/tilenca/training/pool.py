@@ -12,14 +12,13 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from tilenca.shapes.batch import Batch, Drawings
+from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
 from tilenca.training.curriculum import DRAWN, Curriculum
+from tilenca.training.pool_batch import Numbers, States, Taken
 from tilenca.training.recipes import Recipe
 from tilenca.training.update_schedule import Circumstances
 
-States = NDArray[np.float32]
-Numbers = NDArray[np.int64]
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures
 UNDISTURBED_DRAWN = 0.5  # share of the files' own drawings in the undisturbed pool
 WENT_WRONG = 0.3  # most of an undisturbed batch that are grids which were wrong when they were last seen
@@ -46,33 +45,6 @@ class Pool:
     age: Numbers
     lifetime: Numbers
     wrong: NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Taken:
-    """A batch of B grids from the pools.
-
-    Attributes:
-        perturbed: which grids of the perturbed pool come first in the batch.
-        undisturbed: which grids of the undisturbed pool come after them.
-        batch: their cells.
-        states: (N, C) float32.
-        converged: (B,) bool, undisturbed for so long that nothing should change any more.
-        given: their circumstances during the rollout; tiles that are away are back in the seed state when the
-        grid is taken again, and the undisturbed pool loses no messages.
-    """
-
-    perturbed: Numbers
-    undisturbed: Numbers
-    batch: Batch
-    states: States
-    converged: NDArray[np.bool_]
-    given: Circumstances
-
-    @property
-    def counted(self) -> NDArray[np.bool_]:
-        """(B,) whether a grid's result counts: all of its tiles are there, and were from the beginning."""
-        return ~(self.given.staggered | np.logical_or.reduceat(self.given.away, self.batch.starts))
 
 
 class Pools:

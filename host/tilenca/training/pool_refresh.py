@@ -21,7 +21,8 @@ from tilenca.simulator.conditions import Conditions, Fault
 from tilenca.simulator.engine import SEED_STATE, FastEngine
 from tilenca.simulator.simulator import MIXED, Simulator
 from tilenca.simulator.transitions import Order, Way, rebuilt
-from tilenca.training.pool import Pool, Pools, States
+from tilenca.training.pool import Pool, Pools
+from tilenca.training.pool_batch import States
 
 TICKS_PER_STEP = 3  # of training, about as many as one period of a tile there
 CLOCKS = Conditions("clock", boot=0.0)

@@ -48,6 +48,7 @@ class Recipe:
             not agree go into the perturbed pool.
         stability_penalty: weight of the squared change of converged states over one iteration.
         loss_limit: the most that one cell can add to the loss, in units of the squared error; 0: any.
+        limited_from: share of the iterations after which that limit holds; before, nothing may be given up.
         fire_rate: least and most share of tiles that update in a tick, drawn for each sample.
         clocks: share of samples on the tiles' own clocks (fixed phase, own period, last message held).
         ticks_per_period: least and most ticks that one period of such a clock takes.
@@ -72,7 +73,7 @@ class Recipe:
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
             often each failed lately.
         check_every: iterations from one short measurement to the next; training ends early when all targets
-            hold in several of them; 0: never.
+            hold in several of them; 0: never, the last weights become the model.
         validation_runs: runs of each drawing in the final measurement.
     """
 
@@ -101,6 +102,7 @@ class Recipe:
     trials: int = 300
     stability_penalty: float = 0.0
     loss_limit: float = 0.0
+    limited_from: float = 0.5
     fire_rate: tuple[float, float] = (0.5, 0.5)
     clocks: float = 0.0
     ticks_per_period: tuple[float, float] = (2.0, 4.0)
@@ -172,7 +174,7 @@ RECIPES: dict[str, Recipe] = {
     # reaches and what it costs.
     "forms": replace(
         FULL,
-        iterations=72_000,
+        iterations=66_000,
         batch=36,
         undisturbed_pool=384,
         undisturbed_batch=14,
@@ -187,14 +189,17 @@ RECIPES: dict[str, Recipe] = {
         refresh_every=250,
         mine_every=1000,
         trials=200,
-        check_every=20_000,
+        check_every=0,
     ),
     # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
     "many": replace(
         FULL,
         hidden=112,
-        iterations=60_000,
+        iterations=36_000,
+        batch=28,
+        ticks=(10, 24),
         undisturbed_pool=384,
+        undisturbed_batch=8,
         mine_every=1000,
         loss_limit=1.0,
         failure_weighting=0.3,
@@ -204,7 +209,7 @@ RECIPES: dict[str, Recipe] = {
         unknown=0.1,
         unlabelled=0.02,
         ramp=(0.1, 0.3),
-        check_every=20_000,
+        check_every=0,
         validation_runs=20,
     ),
     # For trying out drawings: three sizes, no damage, no unknown drawings.

@@ -19,7 +19,7 @@ class Result:
 
     Attributes:
         model: the integer model.
-        metrics: of `evaluator.validate`, and the end of the training.
+        metrics: of `validation.validate`, and the end of the training.
         history: (iteration, loss, agreement) of each interval.
         checks: (iteration, shortfall, share by kind of measurement) of the short measurements.
     """

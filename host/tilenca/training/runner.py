@@ -105,7 +105,7 @@ def advance(job: Job, tell: Tell, interrupted: Callable[[], bool]) -> Trained:
     suite = _suite(job) if recipe.check_every else None
     while not trainer.done:
         trainer.step()
-        if suite is not None and trainer.iteration % recipe.check_every == 0:
+        if suite is not None and (trainer.iteration % recipe.check_every == 0 or trainer.done):
             check = _check(trainer, suite)
         stop = interrupted()
         if stop or time.monotonic() - saved > CHECKPOINT_EVERY_S:

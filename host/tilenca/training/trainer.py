@@ -151,7 +151,8 @@ class Trainer:
         )
         target = agreed_targets(scores_of(end, len(self.config.labels)), target, batch.starts)
         goal = Goal(len(self.config.labels), target, counted, converged)
-        loss = loss_of(start, end, goal, recipe.stability_penalty, recipe.loss_limit)
+        limit = recipe.loss_limit if self.iteration >= recipe.limited_from * recipe.iterations else 0.0
+        loss = loss_of(start, end, goal, recipe.stability_penalty, limit)
 
         self._descend(loss)
         right = _all_right(scores_of(end, goal.classes), target, batch)

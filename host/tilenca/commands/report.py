@@ -1,0 +1,119 @@
+"""`tilenca report`: every claim, measured again, with the command of each number."""
+
+import argparse
+import json
+import platform
+import shlex
+import time
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tilenca import __version__
+from tilenca.base import paths
+from tilenca.base.errors import InterruptedRunError
+from tilenca.base.processors import processors
+from tilenca.base.project import build_remedy, firmware_image
+from tilenca.base.stdio import warn
+from tilenca.base.whole_file import write_whole
+from tilenca.commands.arguments import add_cluster_arguments, existing_image
+from tilenca.model.file import load_model
+from tilenca.views.progress import show_progress
+
+if TYPE_CHECKING:
+    from tilenca.report.document import Facts
+    from tilenca.report.measure import Folder, Job, Results
+
+REMEDY = "make room there, or give another --out"
+MINUTES = {False: "an hour or so of one core", True: "some two minutes of two cores"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's arguments."""
+    add = parser.add_argument
+    add(
+        "--quick",
+        action="store_true",
+        help=f"few runs and fewer rows: {MINUTES[True]} (the full one: {MINUTES[False]})",
+    )
+    add(
+        "--out",
+        type=Path,
+        required=True,
+        metavar="DIR",
+        help="where the report goes, and what is measured so far",
+    )
+    add_cluster_arguments(parser)
+    add("--json", action="store_true", help="print the rows as one JSON document")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measures what the folder lacks, and writes page, Markdown, figures and JSON."""
+    from tilenca.report.document import figures_of, gap_of, render, sections_of
+    from tilenca.report.experiments import chosen
+    from tilenca.report.measure import Folder, jobs_of, rows_of
+    from tilenca.views.report import draw_figure
+
+    existing_image(firmware_image(), build_remedy())
+    model = load_model(paths.DEFAULT_MODEL)
+    experiments = chosen(args.quick)
+    folder = Folder(args.out / "results")
+    results = _measure(args, jobs_of(experiments, args.quick), folder)
+    rows = rows_of(experiments, args.quick, results)
+    figures = [replace(figure, svg=draw_figure(figure)) for figure in figures_of(experiments, rows)]
+    sections = sections_of(experiments, rows, figures)
+    facts = _facts(args, f"{model.model_id:04X}")
+    every = [row.as_json() for mine in rows.values() for row in mine]
+    files = {"report.json": json.dumps({"rows": every}, indent=1)}
+    for name, template in (("report.html", "page.html.j2"), ("RESULTS.md", "results.md.j2")):
+        files[name] = render(template, facts, sections, gap_of(rows))
+    for section in sections:
+        for number, figure in enumerate(section["figures"], 1):
+            files[f"images/results-{section['key']}-{number}.svg"] = figure.svg + "\n"
+    (args.out / "images").mkdir(exist_ok=True)
+    for name, text in files.items():
+        write_whole(args.out / name, text.encode(), REMEDY)
+    if args.json:
+        print(json.dumps({"rows": every, "files": [str(args.out / name) for name in files]}))
+    else:
+        print(f"{len(every)} rows; open {args.out / 'report.html'}")
+    return 0
+
+
+def _measure(args: argparse.Namespace, jobs: "list[Job]", folder: "Folder") -> "Results":
+    from tilenca.cluster.client import open_cluster
+    from tilenca.report.measure import measure
+
+    started, missing = time.monotonic(), [job for job in jobs if folder.read(job) is None]
+    with show_progress() as tell:
+
+        def told(done: int) -> None:
+            tell("report", done / len(jobs), f"{done} of {len(jobs)} experiments")
+
+        if not missing:
+            return measure(jobs, folder, None, told)
+        warn(
+            f"{len(missing)} of {len(jobs)} experiments to measure: {MINUTES[args.quick]}; "
+            "Ctrl-C keeps what is done"
+        )
+        try:
+            with open_cluster(args.scheduler, args.jobs or processors()) as cluster:
+                warn(f"{cluster.workers()} workers; {cluster.dashboard()}")
+                results = measure(jobs, folder, cluster, told)
+        except KeyboardInterrupt:
+            raise InterruptedRunError(
+                f"interrupted; {args.out} has what is measured so far; to go on, run the same command again"
+            ) from None
+    warn(f"measured in {time.monotonic() - started:.0f} s")
+    return results
+
+
+def _facts(args: argparse.Namespace, model: str) -> "Facts":
+    from tilenca.report.document import Facts
+
+    words = ["tilenca", "report", *(["--quick"] if args.quick else []), "--out", str(args.out)]
+    machine = f"{processors()} processors ({platform.machine()})"
+    return Facts(
+        shlex.join(words), __version__, model, datetime.now(UTC).date().isoformat(), machine, args.quick
+    )

@@ -1,0 +1,28 @@
+"""Every experiment is a command that exists, and no two have one name."""
+
+import pytest
+
+from tilenca import cli
+from tilenca.report.experiments import EXPERIMENTS, TITLES, Experiment, chosen
+from tilenca.report.rows import READERS
+
+
+@pytest.mark.parametrize(
+    ("experiment", "quick"), [(one, quick) for quick in (False, True) for one in chosen(quick)]
+)
+def test_its_command_exists(experiment: Experiment, quick: bool) -> None:
+    words = [*experiment.arguments(quick)]
+    assert not [word for word in words if "{" in word]
+    assert "--json" in words
+    more = ["--out", "x"] if words[0] == "sweep" else []
+    parsed = cli.build_parser(words[0]).parse_args([*words, *more])
+    assert parsed.seed > 0
+    assert experiment.section in TITLES
+    assert experiment.reader in READERS
+
+
+def test_keys_are_unique_and_the_quick_report_has_every_section() -> None:
+    keys = [experiment.key for experiment in EXPERIMENTS]
+    assert len(keys) == len(set(keys))
+    assert {experiment.section for experiment in chosen(quick=True)} == set(TITLES)
+    assert len(chosen(quick=True)) < len(chosen(quick=False)) == len(EXPERIMENTS)
