@@ -33,7 +33,7 @@ class _Seen:
 
 
 @dataclass
-class _Voice:
+class Voice:
     """What a tile has said: the beginning of its next line, and its last line of each kind."""
 
     reader: LineReader = field(default_factory=LineReader)
@@ -41,7 +41,7 @@ class _Voice:
 
 
 # What a board has said, to be kept with a moment of it.
-Said = list[_Voice]
+Said = list[Voice]
 
 
 class Teller:
@@ -60,7 +60,7 @@ class Teller:
         while len(self._seen) < len(self._array):
             self._seen.append(_Seen())
         while len(self._voices) < len(self._array):
-            self._voices.append(_Voice())
+            self._voices.append(Voice())
         for tile, seen in zip(self._array, self._seen, strict=True):
             port, place = port_name(tile.index), self._board.places.get(tile.index)
             if place != seen.place:
