@@ -44,8 +44,8 @@ def train(shapes: Path, out: Path, *more: str) -> int:
     return cli.main(words)
 
 
-def trainer(seed: int = 1) -> Trainer:
-    return make_trainer(job_of([paths.DEFAULT_SHAPES], paths.BUILD, seed))
+def trainer(seed: int = 1, recipe: Recipe = SMOKE) -> Trainer:
+    return make_trainer(job_of([paths.DEFAULT_SHAPES], paths.BUILD, seed, recipe=recipe))
 
 
 def job_of(files: list[Path], out: Path, seed: int = 5, hidden: int = 12, recipe: Recipe = SMOKE) -> Job:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from handwriting import __main__ as handwriting
+from handwriting import typefaces
 from handwriting.sources import SOURCES, Ink, mnist, small
 from tilenca.shapes.file import load_task
 
@@ -91,3 +92,12 @@ def test_a_third_of_those_of_scikit_learn_is_held_out() -> None:
     assert ink.shape == (1797, 8, 8)
     assert (ink.min(), ink.max()) == (0, 1)
     assert int(SOURCES["small"].held_out(digits).sum()) == 602
+
+
+def test_digits_of_typefaces_are_a_shape_file(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("sys.argv", ["typefaces", str(tmp_path)])
+    assert typefaces.main() == 0
+    task = load_task(tmp_path / "typefaces.toml")
+    assert set(task.labels) == set("0123456789")
+    assert len(task.shapes) > 100
+    assert {len(shape.rows) for shape in task.shapes} <= set(typefaces.HEIGHTS)

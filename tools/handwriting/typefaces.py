@@ -53,9 +53,8 @@ def drawings() -> dict[Rows, str]:
 
 def main() -> int:
     """Writes the file."""
-    parser = argparse.ArgumentParser(
-        prog="python -m handwriting.typefaces", description=__doc__.partition("\n")[0]
-    )
+    prog, first = "python -m handwriting.typefaces", __doc__.partition("\n")[0]
+    parser = argparse.ArgumentParser(prog=prog, description=first)
     parser.add_argument("out", type=Path, help="folder of typefaces.toml")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
