@@ -11,6 +11,7 @@ import pytest
 from tilenca.base import paths
 from tilenca.cli import COMMANDS, main
 from tilenca.commands import devices
+from tilenca.commands.examples import epilog
 
 
 @pytest.mark.parametrize("command", sorted(COMMANDS))
@@ -18,7 +19,35 @@ def test_every_command_has_help(command: str, capsys: pytest.CaptureFixture[str]
     with pytest.raises(SystemExit) as caught:
         main([command, "--help"])
     assert caught.value.code == 0
-    assert f"tilenca {command}" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert f"tilenca {command}" in out
+    assert out.endswith(f"{epilog(command)}\n")
+
+
+def test_help_is_a_word_too(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, beginning in ((["help"], "usage: tilenca [-h]"), (["help", "plot"], "usage: tilenca plot")):
+        with pytest.raises(SystemExit) as caught:
+            main(words)
+        assert caught.value.code == 0
+        assert capsys.readouterr().out.startswith(beginning)
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["emualte"], "no command 'emualte' (did you mean 'emulate'?)"),
+        (["hlep"], "no command 'hlep' (did you mean 'help'?)"),
+        (["emulate", "--shaep=4"], "unrecognized arguments: --shaep=4 (did you mean '--shape'?)"),
+        (["emulate", "--qqq"], "unrecognized arguments: --qqq;"),
+    ],
+)
+def test_a_mistyped_word_is_answered_with_the_nearest_one(
+    words: list[str], meant: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(words)
+    assert caught.value.code == 2
+    assert meant in capsys.readouterr().err
 
 
 def test_without_a_command_it_lists_them(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,12 +14,15 @@ from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
 from tilenca.base.project import install_remedy
-from tilenca.base.signals import ending_like_ctrl_c
+from tilenca.base.signals import acknowledging, ending_like_ctrl_c
 from tilenca.base.stdio import check_streams, finish_streams, warn
+from tilenca.base.suggest import did_you_mean
 from tilenca.commands.arguments import Parser
+from tilenca.commands.examples import epilog
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "new": ("tilenca.commands.new", "make a project of your own: shapes, firmware, builds"),
+    "make": ("tilenca.commands.make", "from drawings to tiles: check, train, build and emulate"),
     "shapes": ("tilenca.commands.shapes", "draw and check a shape file, and what its classes may become"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
@@ -39,6 +42,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "monitor": ("tilenca.commands.monitor", "watch the telemetry of all tiles"),
 }
 
+HELP = "help"
 FAILED = 1
 INTERRUPTED = 130
 
@@ -48,14 +52,19 @@ def build_parser(command: str | None = None) -> argparse.ArgumentParser:
     parser = Parser(
         prog="tilenca",
         description="Tiles that know which shape they form: train, export, emulate, flash and watch them.",
-        epilog="Exit status: 0 all well, 1 a check failed, 2 usage, 3 no device, 4 build or export failed, "
+        epilog="`tilenca help COMMAND` says what a command takes. "
+        "Exit status: 0 all well, 1 a check failed, 2 usage, 3 no device, 4 build or export failed, "
         "130 interrupted.",
     )
     parser.add_argument("--version", action="version", version=f"tilenca {__version__}")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name, (module, summary) in COMMANDS.items():
         subparser = subparsers.add_parser(
-            name, help=summary, description=f"{summary[0].upper()}{summary[1:]}."
+            name,
+            help=summary,
+            description=f"{summary[0].upper()}{summary[1:]}.",
+            epilog=epilog(name),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name == command:
             importlib.import_module(module).add_arguments(subparser)
@@ -67,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         check_streams()
         try:
-            with ending_like_ctrl_c():
+            with ending_like_ctrl_c(), acknowledging():
                 status = _run(list(sys.argv[1:] if argv is None else argv))
         finally:
             finish_streams()
@@ -109,8 +118,13 @@ def _run(arguments: list[str]) -> int:
     if not arguments:
         build_parser().print_help()
         return 0
+    if arguments[0] == HELP:  # `tilenca help` and `tilenca help emulate`
+        arguments = [*arguments[1:2], "--help"]
     command = next((word for word in arguments if not word.startswith("-")), None)
-    args = build_parser(command).parse_args(arguments)
+    parser = build_parser(command)
+    if command is not None and command not in COMMANDS and arguments[0] == command:
+        parser.error(f"no command '{command}'{did_you_mean(command, (*COMMANDS, HELP))}")
+    args = parser.parse_args(arguments)
     return int(importlib.import_module(COMMANDS[args.command][0]).run(args))
 
 

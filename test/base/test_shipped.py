@@ -60,3 +60,13 @@ def test_a_wrong_name_is_answered_with_the_right_ones() -> None:
         UsageError, match=r"^hexx/model\.json: No such file .* one of: digits .*\bhex\b.* pentominoes$"
     ):
         load_model(shipped.model_folder("hexx"))
+
+
+def test_a_model_of_the_project_has_a_short_name_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(paths, "PROJECT", tmp_path)
+    own = tmp_path / "models" / "mine"
+    assert shipped.model_folder("mine") == Path("mine")
+    own.mkdir(parents=True)
+    (own / "model.json").touch()
+    assert shipped.model_folder("mine") == own
+    assert shipped.model_folder("hex") == paths.MODELS / "hex"

@@ -1,11 +1,13 @@
 """Ctrl-C at an awkward moment."""
 
 import os
+import queue
 import signal
+import threading
 
 import pytest
 
-from tilenca.base.signals import ending_like_ctrl_c, held_back
+from tilenca.base.signals import acknowledging, ending_like_ctrl_c, held_back, promising
 from tilenca.cli import main
 from tilenca.commands import devices
 
@@ -57,3 +59,39 @@ def test_what_nohup_ignores_stays_ignored(monkeypatch: pytest.MonkeyPatch) -> No
         assert main(["devices"]) == 0
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_an_interrupt_is_acknowledged_while_compiled_code_runs() -> None:
+    said: queue.SimpleQueue[str] = queue.SimpleQueue()
+    before = signal.signal(signal.SIGTERM, lambda number, frame: None)
+    try:
+        with acknowledging(said.put, after_s=0), promising("saves the work first"):
+            signal.raise_signal(signal.SIGTERM)
+            assert said.get(timeout=30) == "tilenca: SIGTERM: saves the work first"
+        with acknowledging(said.put, after_s=0):
+            signal.raise_signal(signal.SIGTERM)
+            assert said.get(timeout=30) == "tilenca: SIGTERM: ends as soon as the step at work is done"
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def test_a_command_that_ends_at_once_needs_no_acknowledgement() -> None:
+    said: list[str] = []
+    with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c(), acknowledging(said.append, after_s=30):
+        signal.raise_signal(signal.SIGHUP)
+    assert said == []
+
+
+def test_other_threads_and_other_signals_are_left_alone() -> None:
+    said: list[str] = []
+    before = signal.signal(signal.SIGUSR1, lambda number, frame: None)
+    try:
+        with acknowledging(said.append, after_s=0):
+            signal.raise_signal(signal.SIGUSR1)
+            in_thread = threading.Thread(target=lambda: acknowledging(said.append).__enter__())
+            in_thread.start()
+            in_thread.join()
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert said == []
+    assert signal.set_wakeup_fd(-1) == -1

@@ -3,9 +3,11 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,9 @@ import pytest
 
 from support.avr import Compile
 from tilenca import cli
+from tilenca.base import paths
 from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.emulator.greeting import greeting
 from tilenca.fleet.image import firmware_id, parse_hex
 from tilenca.fleet.recording import read_recording
 
@@ -50,9 +54,9 @@ def test_json_of_one_shape_is_one_object(capsys: pytest.CaptureFixture[str]) -> 
     report = json.loads(out)
     assert set(report) == {
         "shape", "model_id", "firmware_id", "simulated_s", "wall_s", "tiles", "all_right", "agreed_at_s",
-        "agreed_after_first_update_s", "agreed_at_update",
+        "agreed_after_first_update_s", "agreed_at_update", "verdict",
     }  # fmt: skip
-    assert status == 0
+    assert (status, report["verdict"]) == (0, "right")
     assert report["shape"] == "1"
     assert re.fullmatch("[0-9A-F]{4}", report["model_id"])
     image = parse_hex(FIRMWARE_ELF.with_suffix(".hex").read_text())
@@ -146,12 +150,15 @@ def test_a_recording_can_be_replayed(capsys: pytest.CaptureFixture[str], tmp_pat
     assert len(list(read_recording(record))) == len(lines)
 
 
-def test_tiles_that_show_something_else_are_wrong(capsys: pytest.CaptureFixture[str], row: Path) -> None:
+def test_tiles_that_show_something_else_are_wrong_once_they_had_their_time(
+    capsys: pytest.CaptureFixture[str], row: Path
+) -> None:
     status, out, _ = emulate(capsys, "--shapes", row, "--updates", "3", "--seed", "1")
-    assert (status == 1) == ("WRONG" in out)
-    status, out, _ = emulate(capsys, "--shapes", row, "--seconds", "0.001")  # nothing is shown yet
+    assert (status == 1) == ("WRONG" in out)  # the firmware's classes are not the file's: time would not help
+    status, out, _ = emulate(capsys, "--shape", "1", "--seconds", "0.001", "-v")  # nothing is shown yet
     assert status == 1
-    assert "1: WRONG, 3 of 3 tiles do not show 1: tile 1 nothing, tile 2 nothing, tile 3 nothing" in out
+    assert "1: not yet, 5 of 5 tiles have done no update" in out
+    assert "with --updates 60: tile 1 nothing, tile 2 nothing" in out
 
 
 def test_an_unknown_shape_is_told_which_there_are(capsys: pytest.CaptureFixture[str]) -> None:
@@ -189,8 +196,53 @@ def test_shapes_the_firmware_was_not_trained_on_name_the_model_and_the_remedy(
         capsys, "--shapes", row, "--seconds", "0.3", "--boot-spread", "0", "--bootloader", "none"
     )
     assert status == 1
-    assert re.search("1: WRONG, . of 3 tiles do not show 1 with model [0-9A-F]{4}: tile ", out)
-    assert re.search(f"the firmware's model [0-9A-F]{{4}} is not for {row} \\(1\\); export the model", err)
+    assert re.search("1: WRONG, . of 3 tiles show 1, .* with model [0-9A-F]{4}; -v lists them", out)
+    assert (
+        len(re.findall(f"the firmware's model [0-9A-F]{{4}} is not for {row} \\(1\\); take the one", err))
+        == 1
+    )
+
+
+def test_a_file_with_classes_that_the_firmware_lacks_is_told_at_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    status, out, err = emulate(
+        capsys, "--shapes", "letters", "--shape", "H", "--seconds", "0.05", "--bootloader", "none"
+    )
+    assert status == 1
+    first, *_ = err.splitlines()
+    assert re.match("tilenca: the firmware's model D968 is not for .*letters.toml", first)
+    assert err.count("is not for") == 1
+    assert "WRONG" in out
+
+
+def test_large_drawings_get_the_updates_that_they_need(capsys: pytest.CaptureFixture[str]) -> None:
+    quick = ("--bootloader", "none", "--boot-spread", "0", "--json")
+    status, out, _ = emulate(capsys, "--shape", "1", "--size", "20x16", *quick)
+    report = json.loads(out)
+    assert (status, report["verdict"]) == (0, "right")
+    assert all(tile["updates"] >= 30 for tile in report["tiles"])
+    status, out, _ = emulate(capsys, "--shape", "4", "--size", "20x16", "--updates", "2", *quick)
+    report = json.loads(out)
+    assert (status, report["verdict"]) == (1, "not yet")
+    assert all(tile["updates"] < 10 for tile in report["tiles"])
+
+
+def test_the_shapes_are_those_of_the_firmwares_model(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    hexadecimal = tmp_path / "hex"
+    shutil.copytree(paths.MODELS / "hex", hexadecimal)
+    status, _, err = emulate(capsys, "--model", str(hexadecimal))
+    assert (status, "no firmware was built of it" in err) == (4, True)
+    hello = greeting(FIRMWARE_ELF)
+    assert hello is not None
+    says = replace(hello, model_id=0x90E8)
+    monkeypatch.setattr("tilenca.commands.emulate.greeting", lambda elf: says)
+    status, _, err = emulate(capsys, "--shape", "nothing")
+    assert status == 2
+    assert "hex.toml: no shape 'nothing'; it has: 0 1 2 3 4 5 6 7 8 9 A b C d E F" in err
 
 
 @pytest.mark.parametrize(

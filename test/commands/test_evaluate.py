@@ -319,3 +319,17 @@ def test_drawings_are_stretched_to_the_size_asked_for(capsys: pytest.CaptureFixt
     assert found == drawn
     assert cli.main(["evaluate", "--size", "2x2", "--runs", "1", "--json"]) == 0
     assert [row["label"] for row in json.loads(capsys.readouterr().out)["per_shape"]] == ["1"]
+
+
+def test_a_model_brings_its_own_shapes(capsys: pytest.CaptureFixture[str]) -> None:
+    report = evaluate(capsys, "--model", str(paths.MODELS / "pentominoes"), "--runs", "1", "--steps", "2")
+    assert {row["file"] for row in report["per_shape"]} == {"pentominoes.toml"}
+
+
+def test_a_drawing_with_more_tiles_than_ids_is_not_emulated(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    shapes, block = tmp_path / "block.toml", "\n".join(["#" * 20] * 20)
+    shapes.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n')
+    assert cli.main(["evaluate", "--engine", "emulator", "--shapes", str(shapes)]) == 2
+    assert "shape '0' has 400 tiles; the most that ids allow are 255" in capsys.readouterr().err

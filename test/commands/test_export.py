@@ -255,3 +255,30 @@ def test_without_a_project_it_says_how_to_make_one(
     monkeypatch.setattr(paths, "PROJECT", None)
     assert run("--model", paths.DEFAULT_MODEL) == 4
     assert "make one: tilenca new DIR" in capsys.readouterr().err
+
+
+def test_a_model_that_needs_a_longer_period_says_so(
+    firmware: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("--model", paths.MODELS / "hex", "--out", firmware) == 0
+    said = capsys.readouterr().err
+    assert re.search(
+        r"note: this model needs a period of \d+ ms, and the firmware's is 20 ms: build with", said
+    )
+    assert run("--model", paths.DEFAULT_MODEL, "--out", firmware) == 0
+    assert "period" not in capsys.readouterr().err
+
+
+def test_a_build_beside_the_model_leaves_the_projects_firmware_alone(
+    model_directory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    built: list[Path] = []
+    monkeypatch.setattr("tilenca.commands.own_firmware.build", built.append)
+    before = contents(paths.FIRMWARE)
+    assert run("--model", model_directory, "--build", "--json") == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["image"] == str(paths.model_elf(model_directory))
+    assert all(Path(file).is_relative_to(model_directory / "firmware") for file in report["files"])
+    assert built == [model_directory / "firmware"]
+    assert contents(paths.FIRMWARE) == before
+    assert run("--model", model_directory, "--build", "--check") == 2

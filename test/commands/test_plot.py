@@ -181,3 +181,13 @@ def test_a_folder_is_not_called_like_a_picture(tmp_path: Path, capsys: pytest.Ca
     assert main(["plot", "--out", str(tmp_path / "history.png")]) == 2
     assert "give a folder" in capsys.readouterr().err
     assert not (tmp_path / "history.png").exists()
+
+
+def test_a_model_needs_no_option_and_brings_its_own_shapes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    letters = paths.MODELS / "letters"
+    assert plot(letters, "--film", tmp_path / "f.svg", "--shape", "L", "--steps", 2) == 0
+    assert (tmp_path / "f.svg").exists()
+    assert plot(letters, "--model", paths.MODELS / "hex") == 2
+    assert "which one? give one model" in capsys.readouterr().err

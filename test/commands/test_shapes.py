@@ -111,3 +111,12 @@ def test_a_picture_without_enough_ink_is_refused(capsys: pytest.CaptureFixture[s
     Image.fromarray(np.tile(np.array([0, 255], np.uint8), (20, 10))).save(tmp_path / "grey.png")
     assert cli.main(["shapes", "--image", str(tmp_path / "grey.png"), "--size", "2x2", "--ink", "0.9"]) == 2
     assert "give a smaller --ink" in capsys.readouterr().err
+
+
+def test_a_drawing_with_more_tiles_than_ids_is_a_problem(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "block.toml"
+    block = "\n".join(["#" * 20] * 20)
+    file.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n')
+    assert "shape '0' has 400 tiles; the most that ids allow are 255" in run(capsys, str(file))

@@ -194,3 +194,13 @@ def test_a_label_the_model_does_not_know_is_refused(
     shapes.write_text('[[shape]]\nlabel = "H"\ngrid = """\n#.#\n###\n#.#\n"""\n')
     assert cli.main(["simulate", "--shapes", str(shapes)]) == 2
     assert "does not know 'H'" in capsys.readouterr().err
+
+
+def test_a_model_brings_its_own_shapes_and_a_mistyped_one_is_answered(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["simulate", "--model", str(paths.MODELS / "letters"), "--runs", "1", "--steps", "2"]
+    assert cli.main([*words, "--shape", "L", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["file"] == "letters.toml"
+    assert cli.main([*words, "--shape", "LL"]) == 2
+    assert "no shape 'LL' (did you mean 'L'?)" in capsys.readouterr().err

@@ -13,8 +13,9 @@ import pytest
 
 from support.training import train
 from tilenca import cli
-from tilenca.commands.train import add_arguments, report
+from tilenca.commands.train import add_arguments, report, share_named
 from tilenca.model.file import load_model
+from tilenca.training.recipes import RECIPES
 
 WRITTEN = ("model.json", "weights.npz", "metrics.json", "history.csv", "README.md")
 
@@ -202,3 +203,26 @@ def test_the_worst_missed_targets_come_first_and_the_card_has_the_rest(
     said = capsys.readouterr().out.splitlines()
     assert [line.split(",")[0] for line in said[1:-1]] == [f"  missed: row {n}" for n in range(8)]
     assert said[-1] == f"  and 10 more, all in {tmp_path / 'README.md'}"
+
+
+def test_how_well_a_model_names_its_drawings_is_the_least_of_the_rows_about_them() -> None:
+    rows = [
+        {"key": key, "share": share, "target": target}
+        for key, share, target in (
+            ("drawings", 0.3, None),  # after ten steps; nothing was aimed at
+            ("drawings", 1.0, 0.9995),
+            ("drawings", 0.85, 0.9995),
+            ("unknown", 0.1, 0.98),
+        )
+    ]
+    assert share_named({"rows": rows}) == 0.85
+    assert share_named({"rows": []}) == 0.0
+
+
+def test_a_model_that_names_too_few_of_its_drawings_ends_training_with_1_and_is_kept(
+    two_shapes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(RECIPES, "brief", RECIPES["smoke"])  # smoke itself only tries the commands
+    assert train(two_shapes, tmp_path, "--iterations", "2", "--recipe", "brief") == 1
+    assert "of the runs only: do not rely on this model" in capsys.readouterr().err
+    assert (tmp_path / "model.json").exists()

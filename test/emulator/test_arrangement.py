@@ -9,8 +9,9 @@ import pytest
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator.arrangement import Arrangement
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.shapes.file import Shape
 
 LABELS = tuple("0123456789")

@@ -5,7 +5,8 @@ import pytest
 from support.avr import Compile
 from tilenca.base.errors import TilencaError
 from tilenca.base.paths import DEFAULT_SHAPES, FIRMWARE_ELF
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.settings import Settings

@@ -15,7 +15,7 @@ from support.line_faults import Edges, Vandal, bursts, noise, random_bytes
 from tilenca.base import paths
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator import Array, Link, LinkFault, ResetCause
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.wiring import cables
 from tilenca.protocol.constants import LINK_BAUD
 from tilenca.protocol.settings import settings_block

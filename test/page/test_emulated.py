@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tilenca import cli
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_SHAPES
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import Drawing
 from tilenca.protocol import stream_commands as commands

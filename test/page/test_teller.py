@@ -7,7 +7,8 @@ import pytest
 
 from tilenca.base.sides import EAST
 from tilenca.emulator.arrangement import Arrangement
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.teller import Teller
 from tilenca.protocol.stream import StreamEvent
 from tilenca.shapes.file import Shape

@@ -6,9 +6,9 @@ import pytest
 
 from tilenca.base.errors import TilencaError
 from tilenca.report.experiments import EXPERIMENTS
-from tilenca.report.measure import Folder, Job, jobs_of, measure, rows_of, run_command
+from tilenca.report.measure import Call, Folder, calls_of, measure, rows_of, run_command
 
-QUICK = Job("paper.listing", ("evaluate", "--schedule", "listing", "--runs", "1", "--seed", "5", "--json"))
+QUICK = Call("paper.listing", ("evaluate", "--schedule", "listing", "--runs", "1", "--seed", "5", "--json"))
 
 
 def test_a_command_runs_and_its_result_stays(tmp_path: Path) -> None:
@@ -21,7 +21,7 @@ def test_a_command_runs_and_its_result_stays(tmp_path: Path) -> None:
     told: list[int] = []
     assert measure([QUICK], folder, None, told.append) == {QUICK.key: result}
     assert told == [1]
-    other = Job(QUICK.key, (*QUICK.arguments, "--steps", "10"))
+    other = Call(QUICK.key, (*QUICK.arguments, "--steps", "10"))
     assert folder.read(other) is None, "other arguments have no result yet"
 
 
@@ -34,15 +34,15 @@ def test_a_damaged_result_is_measured_again(tmp_path: Path) -> None:
 
 
 def test_a_command_that_fails_says_which_and_why() -> None:
-    wrong = Job("paper.wrong", ("evaluate", "--model", "nowhere", "--seed", "1", "--json"))
+    wrong = Call("paper.wrong", ("evaluate", "--model", "nowhere", "--seed", "1", "--json"))
     with pytest.raises(TilencaError, match=r"paper\.wrong: tilenca evaluate .* ended with 2: .*nowhere"):
         run_command(None, wrong)
 
 
 def test_the_longest_jobs_come_first_and_the_commands_of_rows_have_no_options_of_output() -> None:
-    jobs = jobs_of(EXPERIMENTS, quick=False)
-    assert jobs[0].key == "suite"
-    assert sorted(job.key for job in jobs) == sorted(experiment.key for experiment in EXPERIMENTS)
+    calls = calls_of(EXPERIMENTS, quick=False)
+    assert calls[0].key == "suite"
+    assert sorted(call.key for call in calls) == sorted(experiment.key for experiment in EXPERIMENTS)
     experiments = [experiment for experiment in EXPERIMENTS if experiment.key == "paper.3x3"]
     times = {"median": 8.0, "p95": 12.0}
     result = {"runs": 2, "per_shape": [{}] * 6, "total_agreement": 1.0, "steps_to_agreement": times}

@@ -7,7 +7,7 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.shapes.batch import Drawings, load_drawings
+from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 
 FILES = [paths.SHAPES / name for name in ("digits.toml", "digits-3x3.toml", "digits-7x6.toml")]
 
@@ -63,3 +63,11 @@ def test_files_that_tables_could_not_tell_apart_are_refused(tmp_path: Path) -> N
         load_drawings([paths.DEFAULT_SHAPES, shapes])
     with pytest.raises(UsageError, match="all of its drawings"):
         load_drawings([shapes, shapes])
+
+
+def test_a_large_area_has_no_strokes_to_vary(tmp_path: Path) -> None:
+    file = tmp_path / "areas.toml"
+    for side, strokes in ((4, True), (15, False)):
+        block = "\n".join(["#" * side] * side)
+        file.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n')
+        assert (load_training_task([file], 1.0, 20)[0].variants is not None) == strokes

@@ -1,6 +1,7 @@
 """Drawings made from drawings: damage that leaves no doubt, and what belongs to no class."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,7 +10,7 @@ from tilenca.shapes import edits
 from tilenca.shapes.cells import cells_of, connected
 from tilenca.shapes.edits import Known
 from tilenca.shapes.file import load_task
-from tilenca.shapes.stretch import stretch
+from tilenca.shapes.stretch import Rows, smallest, stretch
 
 SHAPES = load_task(paths.DEFAULT_SHAPES).shapes
 DIGITS = {shape.label: shape.rows for shape in SHAPES}
@@ -81,3 +82,37 @@ def test_drawing_ends_where_there_are_no_more_drawings() -> None:
         1000, lambda: edits.some_segments(random, SEGMENTS), lambda rows: not KNOWN.is_known(rows)
     )
     assert len(found) == len(set(found)) == 43  # all there are
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 60))
+def test_what_is_known_of_large_drawings_is_what_drawing_all_their_relatives_says(
+    seed: int, tiles: int
+) -> None:
+    random = np.random.default_rng(seed)
+    rows = edits.grown(random, tiles, 9, 9)
+    whole = edits.grown(random, tiles, 8, 8) if seed % 2 else rows
+    known = Known([("A", whole), ("L", ("#.", "##"))])
+    relatives = [smallest(less) for less in edits.without_one(rows)]
+    touched = rows in [*edits.without_one(whole), *edits.without_one(("#.", "##"))]
+    same = smallest(rows) in known.forms
+    assert known.is_known(rows) == (touched or same or any(less in known.forms for less in relatives))
+    others = {known.forms[less] for less in relatives if less in known.forms} - {"A"}
+    if rows == whole:
+        assert known.lookalikes().get("A", []) == sorted(others)
+
+
+def test_the_largest_drawing_is_compared_with_few_relatives(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A block of 15 x 17 tiles has 255 relatives; drawing each of them for each comparison took minutes."""
+    drawn: list[Rows] = []
+
+    def counted(rows: Rows) -> Rows:
+        drawn.append(rows)
+        return smallest(rows)
+
+    monkeypatch.setattr(edits, "smallest", counted)
+    known = Known([("0", ("#" * 17,) * 15), ("L", ("#..", "#..", "###"))])
+    random = np.random.default_rng(1)
+    drawn.clear()
+    for _ in range(20):
+        known.is_known(edits.grown(random, 255, 18, 16))
+    assert len(drawn) < 3 * 20

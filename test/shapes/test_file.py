@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.shapes.cells import connected
-from tilenca.shapes.file import load_task
+from tilenca.shapes.file import load_task, too_large
 
 
 def write(tmp_path: Path, text: str) -> Path:
@@ -137,3 +137,10 @@ def test_arbitrary_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFact
     path.write_text(text, encoding="utf-8")
     with contextlib.suppress(UsageError):
         assert all(connected(s.cells) for s in load_task(path).shapes)
+
+
+def test_a_drawing_with_more_tiles_than_ids_is_named(tmp_path: Path) -> None:
+    block, bar = shape("0", *["#" * 16] * 16), shape("1", "#" * 255)
+    shapes = load_task(write(tmp_path, bar + block)).shapes
+    assert too_large(shapes[:1]) is None
+    assert too_large(shapes) == "shape '0' has 256 tiles; the most that ids allow are 255"

@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 
 from tilenca.base import paths
 from tilenca.shapes.cells import cells_of, connected
+from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import load_task
-from tilenca.shapes.stretch import Rows, smallest, stretch
+from tilenca.shapes.stretch import Extent, Rows, smallest, stretch
 
 DIGITS = {shape.label: shape.rows for shape in load_task(paths.DEFAULT_SHAPES).shapes}
 sizes = st.tuples(st.integers(5, 24), st.integers(3, 24))
@@ -66,3 +67,19 @@ def test_what_lies_half_way_goes_up_or_down_as_asked() -> None:
 
 def test_a_single_tile_has_no_size() -> None:
     assert stretch(drawn("#"), 5, 4) == ("#",)
+
+
+@given(st.sampled_from(sorted(DIGITS)), sizes, st.integers(0, 10_000))
+def test_an_extent_less_a_tile_is_that_of_the_drawing_less_that_tile(
+    label: str, size: tuple[int, int], choice: int
+) -> None:
+    rows = stretch(DIGITS[label], *size)
+    assert rows is not None
+    extent = Extent(rows)
+    small = smallest(rows)
+    assert extent.whole == (len(small), len(small[0]))
+    cells = cells_of(rows)
+    gone = cells[choice % len(cells)]
+    less = smallest(rows_of(cell for cell in cells if cell != gone))
+    assert extent.without(*gone) == (len(less), len(less[0]))
+    assert extent.is_near((len(less), len(less[0])))

@@ -9,7 +9,8 @@ from types import TracebackType
 from typing import Self
 
 from support.owned_clock import OwnedClock
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.serve import STEP_S, STOCK_BOOTLOADER, ServedTile
 from tilenca.emulator.types import port_name
 from tilenca.shapes.file import load_task

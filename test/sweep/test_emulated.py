@@ -7,8 +7,9 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
-from tilenca.emulator.experiment import EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import EmulationSettings
 from tilenca.emulator.faults import parse
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.file import Shape
 from tilenca.simulator.simulator import MIXED

@@ -95,3 +95,15 @@ def test_a_failure_in_one_of_the_processes_is_told(two_shapes: Path, tmp_path: P
         (failure,) = train_side_by_side(jobs[::-1], at_once, lambda _: None)
         assert re.search(r"seed 2: .*checkpoint-2\.pt: damaged checkpoint", failure)
         assert make_trainer(jobs[0]).done, "the other seed went on to its end"
+
+
+def test_an_interrupt_while_preparing_ends_at_once(
+    two_shapes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(*_: object) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        raise AssertionError("preparing went on after the signal")
+
+    monkeypatch.setattr("tilenca.training.runner.build", interrupt)
+    assert train(two_shapes, tmp_path) == 130
+    assert "interrupted while training, before there was anything to keep" in capsys.readouterr().err

@@ -7,7 +7,7 @@ import pytest
 from support.terminal import stderr_on_terminal
 from tilenca.training.progress import Progress
 from tilenca.views import training
-from tilenca.views.training import LINES, show_measuring, show_training
+from tilenca.views.training import LINE_EVERY_S, show_measuring, show_training
 
 
 class Clock:
@@ -47,30 +47,37 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
     assert capsys.readouterr().out == ""
 
 
-def test_a_rate_is_that_of_this_run_not_of_the_one_it_goes_on_from(
+def test_the_time_left_is_by_the_rate_of_this_run_not_of_the_one_it_goes_on_from(
     clock: Clock, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with show_training([5], 1000) as tell:
-        tell(Progress(5, 600, 1.0, 0.0, None))
-        clock.seconds += 4.0
-        tell(Progress(5, 800, 1.0, 0.0, None))
-    assert capsys.readouterr().err.splitlines()[-1].endswith(" 50/s")
+    with show_training([5], 2000) as tell:
+        tell(Progress(5, 1400, 1.0, 0.0, None))
+        clock.seconds += LINE_EVERY_S
+        tell(Progress(5, 1500, 1.0, 0.9, None))
+        clock.seconds += LINE_EVERY_S
+        tell(Progress(5, 1950, 1.0, 0.95, (11, 14, 0.1)))
+    first, *lines = capsys.readouterr().err.splitlines()
+    assert first == "seed 5: 1400 of 2000 iterations; all tiles right on 0% of the drawings"
+    assert lines == [
+        "seed 5: 1500 of 2000 iterations; all tiles right on 90% of the drawings; about 5 min left",
+        "seed 5: 1950 of 2000 iterations; all tiles right on 95% of the drawings; 11 of 14 targets met; "
+        "less than a minute left, less if the targets hold early",
+    ]
 
 
-def test_without_a_terminal_each_seed_tells_at_most_ten_lines(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_terminal_each_seed_tells_a_line_a_minute_and_its_end(
+    clock: Clock, capsys: pytest.CaptureFixture[str]
+) -> None:
     with show_training([5, 6], 1000) as tell:
         for iteration in range(1, 1001):
             tell(Progress(5, iteration, 0.5, 0.25, None))
+            clock.seconds += LINE_EVERY_S / 400
         tell(Progress(6, 1000, 0.5, 0.25, (8, 8, 0.0)))
     said = capsys.readouterr()
     assert said.out == ""
-    lines = said.err.splitlines()
-    assert [line.split()[1:3] for line in lines] == [
-        *(["5:", f"{1000 * part // LINES}/1000"] for part in range(1, LINES + 1)),
-        ["6:", "1000/1000"],
-    ]
-    assert lines[-1].endswith("  8 of 8 targets met")
-    assert "targets" not in lines[0]
+    told = [line.split()[1:3] for line in said.err.splitlines()]
+    assert told == [["5:", "1"], ["5:", "401"], ["5:", "801"], ["5:", "1000"], ["6:", "1000"]]
+    assert said.err.endswith("; 8 of 8 targets met\n")
 
 
 def test_a_measurement_tells_where_its_rows_will_be_and_how_many_there_are(

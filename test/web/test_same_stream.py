@@ -10,7 +10,7 @@ import pytest
 from release.page_bundle import offer_of
 from support.avr import build_target
 from tilenca.base.errors import TilencaError
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import load_offer
 from tilenca.protocol.stream import StreamEvent, refused_event

@@ -16,7 +16,7 @@ from firmware import cost_fit, profile
 from tilenca.base import paths
 from tilenca.base.sides import NORTH, SOUTH
 from tilenca.emulator import Array
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 
 BEGIN, END = "<!-- links: made by `make bench`, do not edit -->", "<!-- /links -->"
 SOFTWARE_ENV = "software_serial"

@@ -9,7 +9,8 @@ import numpy as np
 
 from firmware import budgets
 from tilenca.base import paths
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import load_task

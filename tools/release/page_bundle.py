@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import load_offer
 

@@ -39,6 +39,16 @@ def built_elf(project: Path) -> Path:
 FIRMWARE_ELF = built_elf(CHECKOUT) if CHECKOUT else ROOT / "image" / "firmware.elf"
 
 
+def model_firmware(model: Path) -> Path:
+    """The folder beside a model's files in which its firmware is built; PlatformIO's build is in it."""
+    return model / "firmware"
+
+
+def model_elf(model: Path) -> Path:
+    """The image that was built beside a model's files."""
+    return model_firmware(model) / "build" / FIRMWARE_ENV / "firmware.elf"
+
+
 def find_project(start: Path) -> Path | None:
     """The nearest folder at or above `start` that `tilenca new` made."""
     for folder in (start, *start.parents):

@@ -1,12 +1,69 @@
-"""One policy for all polite ways to end a command: each acts like Ctrl-C."""
+"""One policy for all polite ways to end a command: each acts like Ctrl-C and is acknowledged in a second."""
 
 import signal
+import socket
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType
 
+from tilenca.base.stdio import warn
+
 SIGNALS = (signal.SIGTERM, signal.SIGHUP)
+NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM", signal.SIGHUP: "the terminal closed"}
+ACKNOWLEDGE_AFTER_S = 0.4  # a command that has ended by then has said so itself
+_NEXT = ["ends as soon as the step at work is done"]
+
+
+@contextmanager
+def promising(what: str) -> Iterator[None]:
+    """Within the block, an interrupt is acknowledged with this text: what happens next."""
+    _NEXT.append(what)
+    try:
+        yield
+    finally:
+        _NEXT.pop()
+
+
+@contextmanager
+def acknowledging(say: Callable[[str], None] = warn, after_s: float = ACKNOWLEDGE_AFTER_S) -> Iterator[None]:
+    """Says what happens next when a signal comes whose work takes longer than a moment.
+
+    A thread of its own says it, since Python's handlers wait for compiled code to return. Outside the
+    main thread nothing is said.
+
+    Args:
+        say: prints a line.
+        after_s: how long the block may take to end without an acknowledgement.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    ended = threading.Event()
+    mine, theirs = socket.socketpair()
+    with mine, theirs:
+        theirs.setblocking(False)
+        before = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+        watcher = threading.Thread(target=_acknowledge, args=(mine, ended, say, after_s), daemon=True)
+        watcher.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            signal.set_wakeup_fd(before)
+            with suppress(OSError):
+                theirs.shutdown(socket.SHUT_WR)
+            watcher.join()
+
+
+def _acknowledge(
+    signals: socket.socket, ended: threading.Event, say: Callable[[str], None], after_s: float
+) -> None:
+    """Says a line for every signal that ends commands, until the other end closes."""
+    while came := signals.recv(64):
+        for number in came:
+            if number in NAMES and not ended.wait(after_s):
+                say(f"tilenca: {NAMES[signal.Signals(number)]}: {_NEXT[-1]}")
 
 
 @contextmanager

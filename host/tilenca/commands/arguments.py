@@ -10,6 +10,7 @@ from tilenca.base import paths
 from tilenca.base.errors import UsageError, image_error
 from tilenca.base.shipped import model_folder, model_names, shapes_file, shapes_names
 from tilenca.base.stdio import warn
+from tilenca.base.suggest import did_you_mean
 from tilenca.fleet.tiles_file import DEFAULT
 from tilenca.shapes.sizes import Size, parse_size
 
@@ -29,7 +30,12 @@ class Parser(argparse.ArgumentParser):
         """Refuses what it does not know itself, so that the complaint names the subcommand."""
         known, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            self.error(f"unrecognized arguments: {' '.join(unknown)}")
+            option = unknown[0].partition("=")[0]
+            meant = ""
+            if option.startswith("--"):
+                names = [name[2:] for name in self._option_string_actions if name.startswith("--")]
+                meant = did_you_mean(option[2:], names).replace("'", "'--", 1)
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{meant}")
         return known, unknown
 
 
@@ -98,16 +104,20 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_shapes_argument(add: Callable[..., Any], what: str, **more: Any) -> None:
+OWN_SHAPES = "those that the model was trained on"
+
+
+def add_shapes_argument(add: Callable[..., Any], what: str, usual: str = "digits", **more: Any) -> None:
     """The `--shapes` option of all commands that read shape files.
 
     Args:
         add: `add_argument` of a parser or a group.
         what: the rest of the help text, before the names of the files that come with tilenca.
+        usual: the files where none are given, for the help text.
         more: further arguments of `add`.
     """
     names = " ".join(shapes_names())
-    add("--shapes", type=shapes_file, metavar="F", help=f"{what}, or one of: {names} (digits)", **more)
+    add("--shapes", type=shapes_file, metavar="F", help=f"{what}, or one of: {names} ({usual})", **more)
 
 
 def add_condition_arguments(parser: argparse.ArgumentParser) -> None:

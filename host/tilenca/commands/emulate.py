@@ -3,11 +3,13 @@
 import argparse
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.project import build_remedy, firmware_image
+from tilenca.base.shipped import model_folder
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import (
     add_shapes_argument,
@@ -18,22 +20,27 @@ from tilenca.commands.arguments import (
     size,
     whole,
 )
-from tilenca.commands.emulate_runs import observe, print_results, run_all, watch
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.commands.emulate_runs import observe, print_results, run_all, updates_for, watch
+from tilenca.commands.origin import model_with_id, own_shapes, without_a_dash
+from tilenca.commands.own_firmware import image_of
+from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.faults import KINDS
 from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.greeting import greeting, settings_of
 from tilenca.emulator.hardware import UNPOWERED
 from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.emulator.side_by_side import threads_of_each
 from tilenca.fleet.recording import Recorder
+from tilenca.model.file import Model
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
-from tilenca.shapes.file import Shape, Task, load_task
+from tilenca.protocol.sentences import HelloSentence
+from tilenca.shapes.file import UNKNOWN, Shape, Task, load_task, too_large
 from tilenca.shapes.sizes import Size, size_name
+from tilenca.views.emulated import foreign_firmware
 from tilenca.views.lag import show_lag
 
 ALL = "all"
-MAX_TILES = 255  # a tile's number is one byte
 DEFAULT_UPDATES = 30
 NO_BOOTLOADER = "none"
 # A UART that is off by a twentieth understands nothing; twice that is far enough to see it.
@@ -52,15 +59,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="a shape, such as 4, or 4@2 if the label has two drawings; again for more (default: all)",
     )
-    add_shapes_argument(add, "shape file", default=paths.DEFAULT_SHAPES)
+    add_shapes_argument(add, "shape file", "that of the firmware's model")
     add("--size", type=size, metavar="RxC", help="stretch the shapes to so many rows and columns, like 9x7")
-    add("--elf", type=Path, metavar="F", help="firmware image (the last build's, or the one of the package)")
+    image = parser.add_mutually_exclusive_group()
+    image.add_argument(
+        "--model", type=model_folder, metavar="DIR", help="the firmware that was built of this model"
+    )
+    image.add_argument(
+        "--elf", type=Path, metavar="F", help="firmware image (the last build's, or the one of the package)"
+    )
     length = parser.add_mutually_exclusive_group()
     length.add_argument(
         "--seconds", type=number(0.001, MAX_SECONDS), metavar="S", help="run for S emulated seconds"
     )
     length.add_argument(
-        "--updates", type=count, metavar="N", help=f"run until every tile did N updates ({DEFAULT_UPDATES})"
+        "--updates",
+        type=count,
+        metavar="N",
+        help=f"run until every tile did N updates ({DEFAULT_UPDATES}, or more until all agree, at most what "
+        "such a drawing may take)",
     )
     add(
         "--period-ms",
@@ -143,20 +160,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=UNPOWERED[0],
         help="what a tile without power does to its neighbours' inputs (low)",
     )
+    add("-v", "--verbose", action="store_true", help="list every tile that shows something else")
     add("--keep-running", action="store_true", help="with --serve: opening a port does not reset its tile")
 
 
 def run(args: argparse.Namespace) -> int:
     """Runs the command; 1 when a tile of any shape ends up wrong."""
     _check_combinations(args)
+    image = args.elf or (image_of(args.model) if args.model else firmware_image())
+    existing_image(image, f"{build_remedy()}, or give --elf")
+    hello = greeting(image)
+    defaults = settings_of(hello)
+    known = None if hello is None else model_with_id(hello.model_id, args.model)
+    if args.shapes is None:
+        args.shapes = own_shapes(*known)[0] if known else paths.DEFAULT_SHAPES
     task = load_task(args.shapes)
     shapes = _chosen(task, args.shape or [ALL], args.size)
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
-    image = args.elf or firmware_image()
-    existing_image(image, f"{build_remedy()}, or give --elf")
-    defaults = firmware_settings(image)
+    told = _foreign(hello, known and known[0], task)
+    args.foreign = bool(told)
+    for note in told:
+        warn(f"tilenca: {note}")
     settings = EmulationSettings(
         seconds=args.seconds,
         updates=args.updates or DEFAULT_UPDATES,
@@ -172,7 +198,8 @@ def run(args: argparse.Namespace) -> int:
     )
 
     def lay_out(shape: Shape) -> Emulation:
-        return Emulation(shape, task.labels, image, settings, defaults)
+        most = None if args.updates else updates_for(shape)
+        return Emulation(shape, task.labels, image, replace(settings, most_updates=most), defaults)
 
     if args.serve is not None:
         _serve(args, lay_out(shapes[0]))
@@ -184,9 +211,21 @@ def run(args: argparse.Namespace) -> int:
         else:
             results = run_all(args, task, lay_out, shapes, record)
     print_results(args, results)
-    for note in sorted({note for result in results for note in result.notes}):
+    for note in sorted({note for result in results for note in result.notes} - set(told)):
         warn(f"tilenca: {note}")
     return 0 if all(result.report["all_right"] for result in results) else 1
+
+
+def _foreign(hello: HelloSentence | None, model: Model | None, task: Task) -> list[str]:
+    """What to say before the run where the firmware's model does not know a class of the file."""
+    if hello is None:
+        return []
+    if model is None:
+        fits = hello.classes in (len(task.labels), len({*task.labels, UNKNOWN}))
+    else:
+        fits = set(task.labels) <= set(model.labels)
+    notes = [] if fits else [foreign_firmware(hello, task)]
+    return notes + [note for note in (model and without_a_dash(model),) if notes and note]
 
 
 def _serve(args: argparse.Namespace, emulation: Emulation) -> None:
@@ -238,9 +277,6 @@ def _chosen(task: Task, names: Sequence[str], wanted: Size | None) -> list[Shape
             raise UsageError(
                 f"--size {size_name(wanted)}: no shape can be drawn that small; try a larger one"
             )
-    for shape in chosen:
-        if len(shape.cells) > MAX_TILES:
-            raise UsageError(
-                f"{task.path}: shape '{shape.name}' has {len(shape.cells)} tiles; at most {MAX_TILES}"
-            )
+    if (remedy := too_large(chosen)) is not None:
+        raise UsageError(f"{task.path}: {remedy}")
     return chosen

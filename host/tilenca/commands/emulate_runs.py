@@ -18,10 +18,11 @@ from tilenca.emulator.debug import attend, debuggers, frames, waveforms
 from tilenca.emulator.eeprom_files import save_eeprom
 from tilenca.emulator.experiment import Emulation
 from tilenca.emulator.side_by_side import run_side_by_side
+from tilenca.evaluation.cases import steps_for
 from tilenca.fleet.recording import Recorder, as_record
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.file import Shape, Task
-from tilenca.views.emulated import mismatch, take_picture, verdict
+from tilenca.views.emulated import judge, mismatch, take_picture, verdict
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.tiles import Picture, beside
 
@@ -47,12 +48,20 @@ def _record_line(shape: Shape, heard: Heard) -> str:
     return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
 
 
-def _result(emulation: Emulation, task: Task, started: float) -> EmulationResult:
+def _result(args: argparse.Namespace, emulation: Emulation, task: Task, started: float) -> EmulationResult:
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
+    expected = 0 if args.foreign else updates_for(emulation.shape)
     if remedy := mismatch(emulation, task):
         notes.append(remedy)
-    report = emulation.report(time.monotonic() - started)
-    return EmulationResult(report, take_picture(emulation), verdict(emulation), tuple(notes))
+        expected = 0  # more time would not help
+    report = emulation.report(time.monotonic() - started) | {"verdict": judge(emulation, expected)}
+    words = verdict(emulation, expected, args.verbose)
+    return EmulationResult(report, take_picture(emulation), words, tuple(notes))
+
+
+def updates_for(shape: Shape) -> int:
+    """The updates in which the tiles of a drawing may agree: as many as its model is measured with."""
+    return steps_for((len(shape.rows), len(shape.rows[0])))
 
 
 @contextmanager
@@ -133,7 +142,7 @@ def _run_one(
                 lines.extend(_record_line(shape, line) for line in heard)
 
         emulation.run(look)
-        return _result(emulation, task, started), lines
+        return _result(args, emulation, task, started), lines
 
 
 def watch(
@@ -159,7 +168,7 @@ def watch(
                 _tell_changes(running, told)
 
         emulation.run(show)
-        return _result(emulation, task, started)
+        return _result(args, emulation, task, started)
 
 
 def _tell_changes(emulation: Emulation, told: list[int]) -> None:

@@ -13,6 +13,7 @@ from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.base.project import build_remedy, firmware_image, install_remedy
 from tilenca.commands.arguments import (
+    OWN_SHAPES,
     add_condition_arguments,
     add_model_argument,
     add_shapes_argument,
@@ -20,7 +21,9 @@ from tilenca.commands.arguments import (
     seed,
     size,
 )
-from tilenca.emulator.experiment import Emulation, EmulationSettings, firmware_settings
+from tilenca.commands.origin import shapes_or_own
+from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY
 from tilenca.evaluation.metrics import answer_shares, convergence_times
@@ -29,6 +32,7 @@ from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
+from tilenca.shapes.file import too_large
 from tilenca.shapes.sizes import Size, size_name
 from tilenca.simulator.conditions import Conditions
 from tilenca.simulator.engine import Engine, FastEngine
@@ -72,7 +76,7 @@ class RunResults:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
     add_model_argument(parser)
-    add_shapes_argument(parser.add_argument, "shape files", nargs="+", default=[paths.DEFAULT_SHAPES])
+    add_shapes_argument(parser.add_argument, "shape files", OWN_SHAPES, nargs="+")
     parser.add_argument(
         "--engine",
         choices=tuple(RUNS),
@@ -115,6 +119,7 @@ def run(args: argparse.Namespace) -> int:
     """Measures and prints."""
     runs = RUNS[args.engine] if args.runs is None else args.runs
     model = load_model(args.model)
+    args.shapes = shapes_or_own(args.shapes, model, args.model)
     if args.suite:
         return _run_suite(args, model)
     if args.row:
@@ -195,7 +200,10 @@ def _emulate(
     """Runs the firmware image, one emulation for each entry of `chosen`."""
     if args.schedule != "clock" or args.loss or args.dead:
         raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
-    elf = firmware_image()
+    if (remedy := too_large(drawings.shapes)) is not None:
+        raise UsageError(f"--engine emulator: {remedy}")
+    beside = paths.model_elf(args.model)
+    elf = beside if beside.exists() else firmware_image()
     if not elf.exists():
         raise BuildError(f"{elf}: no firmware image; {build_remedy()}")
     image = Image(elf, firmware_settings(elf), model, args.model)

@@ -69,11 +69,16 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(_text(found))
     if not found.fits_period:
-        raise TilencaError(
-            f"an update every {found.period_ms} ms is too often; build with -D TILENCA_PERIOD_MS="
-            f"{found.shortest_period_ms} in platformio.ini, or train with a smaller --hidden or --state"
-        )
+        raise TilencaError(f"an update every {found.period_ms} ms is too often; {longer_period(found)}")
     return 0
+
+
+def longer_period(found: cost.Fit) -> str:
+    """The remedy for a network that does not fit the firmware's period."""
+    return (
+        f"build with -D TILENCA_PERIOD_MS={found.shortest_period_ms} in platformio.ini, or train with a "
+        "smaller --hidden or --state"
+    )
 
 
 def _text(found: cost.Fit) -> str:

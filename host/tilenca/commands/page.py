@@ -14,7 +14,7 @@ from tilenca.base.project import build_remedy, firmware_image, install_remedy
 from tilenca.base.shipped import shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import existing_image
-from tilenca.emulator.experiment import firmware_settings
+from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.offer import DEFAULT_SHAPES, load_offer
 
 DEFAULT_PORT = 8137

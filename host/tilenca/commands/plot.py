@@ -8,7 +8,9 @@ from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.arguments import add_model_argument, add_shapes_argument, seed, whole
+from tilenca.base.shipped import model_folder
+from tilenca.commands.arguments import OWN_SHAPES, add_model_argument, add_shapes_argument, seed, whole
+from tilenca.commands.origin import shapes_or_own
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
@@ -22,6 +24,7 @@ MAX_STEPS = 500
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
+    parser.add_argument("folder", nargs="?", type=model_folder, metavar="DIR", help="the same as --model DIR")
     add_model_argument(parser)
     parser.add_argument(
         "--out",
@@ -40,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     film.add_argument(
         "--shape", metavar="NAME", help="the shape to film, such as 4, or 4@2 if the label has two drawings"
     )
-    add_shapes_argument(film.add_argument, "the file it is in")
+    add_shapes_argument(film.add_argument, "the file it is in", OWN_SHAPES)
     film.add_argument(
         "--steps",
         type=whole(1, MAX_STEPS),
@@ -56,6 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Draws, and prints which file."""
+    if args.folder is not None:
+        if args.model != paths.DEFAULT_MODEL:
+            raise UsageError(f"{args.folder} and --model {args.model}: which one? give one model")
+        args.model = args.folder
     report = _history(args) if args.film is None else _film(args)
     print(json.dumps(report) if args.json else report["file"])
     return 0
@@ -126,9 +133,9 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
     from tilenca.views.film import draw_gif, draw_strip
 
     model = load_model(args.model)
-    shapes = args.shapes or paths.DEFAULT_SHAPES
-    drawings = load_drawings([shapes], labels=model.labels)
-    number = find_shape(drawings.shapes, args.shape, shapes)
+    shapes = shapes_or_own(args.shapes and [args.shapes], model, args.model)
+    drawings = load_drawings(shapes, labels=model.labels)
+    number = find_shape(drawings.shapes, args.shape, shapes[0])
     schedule: ScheduleKind = args.schedule or "clock"
     chance = 1 if args.seed is None else args.seed
     film = record(model, drawings, number, args.steps or FILM_STEPS, schedule, chance)

@@ -23,7 +23,7 @@ from tilenca.views.progress import show_progress
 
 if TYPE_CHECKING:
     from tilenca.report.document import Facts
-    from tilenca.report.measure import Folder, Job, Results
+    from tilenca.report.measure import Call, Folder, Results
 
 REMEDY = "make room there, or give another --out"
 MINUTES = {False: "an hour or so of one core", True: "some two minutes of two cores"}
@@ -52,14 +52,14 @@ def run(args: argparse.Namespace) -> int:
     """Measures what the folder lacks, and writes page, Markdown, figures and JSON."""
     from tilenca.report.document import figures_of, gap_of, render, sections_of
     from tilenca.report.experiments import chosen
-    from tilenca.report.measure import Folder, jobs_of, rows_of
+    from tilenca.report.measure import Folder, calls_of, rows_of
     from tilenca.views.report import draw_figure
 
     existing_image(firmware_image(), build_remedy())
     model = load_model(paths.DEFAULT_MODEL)
     experiments = chosen(args.quick)
     folder = Folder(args.out / "results")
-    results = _measure(args, jobs_of(experiments, args.quick), folder)
+    results = _measure(args, calls_of(experiments, args.quick), folder)
     rows = rows_of(experiments, args.quick, results)
     figures = [replace(figure, svg=draw_figure(figure)) for figure in figures_of(experiments, rows)]
     sections = sections_of(experiments, rows, figures)
@@ -81,26 +81,26 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _measure(args: argparse.Namespace, jobs: "list[Job]", folder: "Folder") -> "Results":
+def _measure(args: argparse.Namespace, calls: "list[Call]", folder: "Folder") -> "Results":
     from tilenca.cluster.client import open_cluster
     from tilenca.report.measure import measure
 
-    started, missing = time.monotonic(), [job for job in jobs if folder.read(job) is None]
+    started, missing = time.monotonic(), [call for call in calls if folder.read(call) is None]
     with show_progress() as tell:
 
         def told(done: int) -> None:
-            tell("report", done / len(jobs), f"{done} of {len(jobs)} experiments")
+            tell("report", done / len(calls), f"{done} of {len(calls)} experiments")
 
         if not missing:
-            return measure(jobs, folder, None, told)
+            return measure(calls, folder, None, told)
         warn(
-            f"{len(missing)} of {len(jobs)} experiments to measure: {MINUTES[args.quick]}; "
+            f"{len(missing)} of {len(calls)} experiments to measure: {MINUTES[args.quick]}; "
             "Ctrl-C keeps what is done"
         )
         try:
             with open_cluster(args.scheduler, args.jobs or processors()) as cluster:
                 warn(f"{cluster.workers()} workers; {cluster.dashboard()}")
-                results = measure(jobs, folder, cluster, told)
+                results = measure(calls, folder, cluster, told)
         except KeyboardInterrupt:
             raise InterruptedRunError(
                 f"interrupted; {args.out} has what is measured so far; to go on, run the same command again"

@@ -15,7 +15,7 @@ from tilenca.base.stdio import warn
 from tilenca.commands.arguments import number, seed, size, whole
 from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
 from tilenca.shapes.batch import Drawings, load_training_task
-from tilenca.shapes.file import Shape, load_task, shape_table
+from tilenca.shapes.file import Shape, Task, load_task, shape_table, too_large
 from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
 from tilenca.shapes.image import cropped, drawing_of, pooled, read_image
 from tilenca.shapes.sizes import LARGEST, Size
@@ -85,9 +85,11 @@ def run(args: argparse.Namespace) -> int:
     if (args.held_out or args.toml) and not args.vary:
         raise UsageError("--held-out and --toml are about variants; add --vary")
     task = load_task(args.shapes)
-    drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
-    variants = _variants(drawings, args) if args.vary else {}
-    problems = _problems(task.labels)
+    problems = _problems(task)
+    variants: dict[str, list[Rows]] = {}
+    if args.vary or too_large(task.shapes) is None:
+        drawings, _ = load_training_task([args.shapes], 1.0, len(task.labels))
+        variants = _variants(drawings, args) if args.vary else {}
     if args.toml:
         which = "of forms held out from training" if args.held_out else "as training draws them"
         print(f"# Variants of {args.shapes.name}, {which}, seed {args.seed}.\n\nvary = false\n")
@@ -159,7 +161,8 @@ def _variants(drawings: Drawings, args: argparse.Namespace) -> dict[str, list[Ro
     """Some variants of every class, as training draws them or of forms that it never sees."""
     if drawings.variants is None:
         raise UsageError(
-            f"{args.shapes}: says vary = false, so its classes are just its drawings; leave --vary out"
+            f"{args.shapes}: has areas or says vary = false, so its classes are just its drawings; leave "
+            "--vary out"
         )
     random, split = np.random.default_rng(args.seed), LAST if args.held_out else TRAINED
     return {
@@ -168,10 +171,12 @@ def _variants(drawings: Drawings, args: argparse.Namespace) -> dict[str, list[Ro
     }
 
 
-def _problems(labels: tuple[str, ...]) -> list[str]:
-    most = Dimensions(DEFAULT_CHANNELS, 1, 1).max_classes
-    if len(labels) <= most:
-        return []
-    return [
-        f"{len(labels)} classes are more than the default state holds ({most}): train with a wider --state"
-    ]
+def _problems(task: Task) -> list[str]:
+    """What keeps the drawings from being trained, a sentence each."""
+    most, classes = Dimensions(DEFAULT_CHANNELS, 1, 1).max_classes, len(task.labels)
+    problems = [] if (large := too_large(task.shapes)) is None else [large]
+    if classes > most:
+        problems.append(
+            f"{classes} classes are more than the default state holds ({most}): train with a wider --state"
+        )
+    return problems

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.live import Live
 
-from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.processors import processors
+from tilenca.base.suggest import did_you_mean
 from tilenca.commands.arguments import (
+    OWN_SHAPES,
     add_condition_arguments,
     add_model_argument,
     add_shapes_argument,
@@ -23,6 +24,7 @@ from tilenca.commands.arguments import (
     seed,
     whole,
 )
+from tilenca.commands.origin import shapes_or_own
 from tilenca.evaluation.metrics import convergence_times
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
@@ -49,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add = parser.add_argument
     add_model_argument(parser)
-    add_shapes_argument(add, "shape files", nargs="+")
+    add_shapes_argument(add, "shape files", OWN_SHAPES, nargs="+")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
         "--shape",
@@ -77,7 +79,9 @@ def run(args: argparse.Namespace) -> int:
     """Runs the command."""
     _check_combinations(args)
     model = load_model(args.model)
-    drawings = _block(model, *args.array) if args.array else _drawings(args, model)
+    if not args.array:
+        args.shapes = shapes_or_own(args.shapes, model, args.model)
+    drawings = _block(model, *args.array) if args.array else load_drawings(args.shapes, labels=model.labels)
     numbers = _chosen(drawings, args)
     random = np.random.default_rng(args.seed)
     if args.watch:
@@ -119,10 +123,6 @@ def _check_combinations(args: argparse.Namespace) -> None:
         raise UsageError("--watch shows one run of each shape; leave --runs out")
 
 
-def _drawings(args: argparse.Namespace, model: Model) -> Drawings:
-    return load_drawings(args.shapes or [paths.DEFAULT_SHAPES], labels=model.labels)
-
-
 def _block(model: Model, rows: int, cols: int) -> Drawings:
     """A full block of tiles; it has no class, so no tile of it is right or wrong."""
     shape = Shape(model.labels[0], ("#" * cols,) * rows, f"{rows}x{cols}")
@@ -135,8 +135,11 @@ def _chosen(drawings: Drawings, args: argparse.Namespace) -> list[int]:
     wanted = args.shape or [ALL]
     for name in wanted:
         if name not in (ALL, *names):
-            files = ", ".join(str(path) for path in args.shapes or [paths.DEFAULT_SHAPES])
-            raise UsageError(f"{files}: no shape '{name}'; there is: {' '.join(dict.fromkeys(names))}")
+            files = ", ".join(map(str, args.shapes))
+            raise UsageError(
+                f"{files}: no shape '{name}'{did_you_mean(name, names)}; there is: "
+                f"{' '.join(dict.fromkeys(names))}"
+            )
     return [number for number, name in enumerate(names) if ALL in wanted or name in wanted]
 
 

@@ -15,6 +15,7 @@ from tilenca.base import paths
 from tilenca.base.errors import BuildError, InterruptedRunError, UsageError
 from tilenca.base.processors import processors
 from tilenca.base.project import build_remedy, firmware_image, place_of
+from tilenca.base.signals import promising
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import (
     add_cluster_arguments,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 RUNS = {FAST: 100, EMULATOR: 10}
 MOST_SHOWN = 60  # cells that are printed
+KEEPING = "keeps what was measured; the same command goes on from there"
 LINES = 10  # of progress, where there is no terminal
 
 
@@ -145,7 +147,7 @@ def _measure(args: argparse.Namespace, plan: "Plan", journal: Any) -> "Progress"
     try:
         with open_cluster(args.scheduler, args.jobs or processors(), check) as cluster:
             _announce(plan, progress, cluster)
-            with _shown(cluster) as tell:
+            with _shown(cluster) as tell, promising(KEEPING):
                 return run_sweep(plan, journal, cluster, tell)
     except KeyboardInterrupt:
         progress, _ = progress_of(plan, journal)

@@ -17,6 +17,7 @@ from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
+from tilenca.commands.origin import without_a_dash
 from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, announce, check_out, make_plan
 from tilenca.evaluation.suites import make_suite
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 SUITE_SEED = 1_000_000  # larger than any usual --seed, so that training never draws the same numbers
 MOST_MISSED = 8  # missed targets to print, the worst ones first
+FIT = 0.8  # least share of the runs in which a model must name the drawings of its files
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
@@ -116,7 +118,18 @@ def run(args: argparse.Namespace) -> int:
     for path in checkpoints(args.out):
         path.unlink()
     report(args, where, result.metrics, time.monotonic() - started)
+    if (note := without_a_dash(result.model)) is not None:
+        warn(note)
+    if args.recipe != "smoke" and (named := share_named(result.metrics)) < FIT:
+        warn(f"tilenca: names its own drawings in {named:.0%} of the runs only: do not rely on this model")
+        return 1
     return 0
+
+
+def share_named(metrics: dict[str, Any]) -> float:
+    """The least share of the runs, of all schedules, in which a model names the drawings of its files."""
+    rows = (row for row in metrics["rows"] if row["key"] == "drawings" and row["target"] is not None)
+    return min((float(row["share"]) for row in rows), default=0.0)
 
 
 def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
@@ -276,5 +289,9 @@ def report(args: argparse.Namespace, where: Path, metrics: dict[str, Any], secon
         print(f"  and {len(missed) - MOST_MISSED} more, all in {where / 'README.md'}")
     if missed and args.recipe == "smoke":
         warn("note: recipe smoke only tries the commands; a model that works takes --recipe quick or full")
-    shapes = f" --shapes {shlex.join(map(str, args.shapes))}"
-    warn(f"next: tilenca evaluate --model {where}{shapes}, or tilenca export --model {where} and pio run")
+    elif missed:
+        warn("note: more of them hold with more --iterations or --seeds, a wider --hidden, or --recipe full")
+    warn(
+        f"next: tilenca evaluate --model {where}, or tilenca export --model {where} --build and then "
+        f"tilenca emulate --model {where}"
+    )

@@ -93,6 +93,8 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
         doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
         if doubts:
             warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+    if plan.recipe.varied and plan.task.variants is None:
+        warn("note: drawings with areas, or with vary = false, have no forms: they alone are trained on")
     if plan.recipe.varied == 0 and plan.varies:
         warn("note: this recipe trains on the drawings alone; only --recipe forms heeds [vary] and [forms]")
     warn(
@@ -105,8 +107,8 @@ def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
         "others fall short, added up: 0.01 is 1 % of the runs of one target"
     )
     warn(
-        "progress: the loss, the share of drawings with every tile right, iterations per second"
-        f"{met if plan.recipe.check_every else ''}"
+        "progress: the share of drawings with every tile right, on a terminal also the loss and iterations "
+        f"per second{met if plan.recipe.check_every else ''}; without a terminal a line a minute"
     )
 
 

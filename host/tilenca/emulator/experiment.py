@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tilenca.base.errors import TilencaError, image_error
+from tilenca.base.errors import TilencaError
 from tilenca.emulator.array import Array
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.faults import Faults, FaultSpec
@@ -19,20 +19,20 @@ from tilenca.emulator.tile import EmulatedTile
 from tilenca.emulator.types import last_begun
 from tilenca.emulator.voice import Voice
 from tilenca.emulator.wiring import cables
-from tilenca.protocol.line_reader import Heard, LineReader
-from tilenca.protocol.sentences import HelloSentence, LinkSentence, OtherVersionSentence, TileSentence
+from tilenca.protocol.line_reader import Heard
+from tilenca.protocol.sentences import HelloSentence, LinkSentence, TileSentence
 from tilenca.protocol.settings import Settings, settings_block
 from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import label_of_glyph
 
 SLICE_S = 0.05
-HELLO_S = 1.0  # the longest time until a firmware greets; it usually takes milliseconds
 # A tile that takes this much longer than its updates should take will never finish.
 PATIENCE = 1.5
 PATIENCE_S = 3.0
 # The stock bootloader gives way to the program after a second without a byte; see docs/EMULATOR.md.
 BOOTLOADER_S = 1.5
 BYTE_S = 10 / 115200
+STEADY_UPDATES = 10  # tiles that were right for so many updates have agreed
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ class EmulationSettings:
     Attributes:
         seconds: run so long; None: until every tile has done `updates` updates.
         updates: see `seconds`.
+        most_updates: go on to so many until all tiles have been right for a while; None: end after `updates`.
         period_ms: written into each tile's settings; None: the firmware's own.
         ppm: clock errors are uniform in -ppm..ppm.
         boot_spread_s: tiles are switched on at times uniform in 0..boot_spread_s.
@@ -55,6 +56,7 @@ class EmulationSettings:
 
     seconds: float | None = None
     updates: int = 30
+    most_updates: int | None = None
     period_ms: int | None = None
     ppm: float = 3000.0
     boot_spread_s: float = 1.0
@@ -64,27 +66,6 @@ class EmulationSettings:
     faults: tuple[FaultSpec, ...] = ()
     threads: int = 1
     eeprom: Path | None = None
-
-
-def firmware_settings(elf: Path) -> Settings | None:
-    """The settings of a firmware with an empty EEPROM, as one tile reports them; None if it does not greet.
-
-    Raises:
-        BuildError, UsageError: the image cannot be used or speaks another version of the protocol, or the
-            emulator is not built.
-        TilencaError: the firmware stopped at a fault.
-    """
-    reader = LineReader()
-    with Array(elf) as array:
-        while array.time_s < HELLO_S:
-            array.run(SLICE_S)
-            for _, sentence in reader.feed(array[0].read_serial()):
-                if isinstance(sentence, OtherVersionSentence):
-                    raise image_error(f"{elf}: {sentence.remedy}")
-                if isinstance(sentence, HelloSentence):
-                    pace = sentence.period_ms, sentence.updates
-                    return Settings(sentence.tile, *pace, sentence.brightness)
-    return None
 
 
 class Emulation:
@@ -105,7 +86,7 @@ class Emulation:
             labels: those of all classes; they tell "5" from "S".
             elf: the firmware image.
             settings: of the run.
-            defaults: the result of `firmware_settings`; with None tiles get no settings and no number.
+            defaults: of `greeting.firmware_settings`; with None tiles get no settings and no number.
 
         Raises:
             BuildError, UsageError: the image cannot be used, or the emulator is not built.
@@ -177,8 +158,22 @@ class Emulation:
         """The done share of the run, 0 to 1; in updates, that of the least advanced tile."""
         if self.settings.seconds is not None:
             return min(self.array.time_s / self.settings.seconds, 1.0)
-        done = min(map(self._updates, self._standing()), default=0)
+        done = self.fewest_updates()
+        if done >= self.settings.updates and self._goes_on(done):
+            return min(done / (self.settings.most_updates or done), 0.99)
         return min(done / self.settings.updates, 1.0)
+
+    def _goes_on(self, done: int) -> bool:
+        """Whether the tiles may take more updates, and have not been right for a while."""
+        if self.settings.most_updates is None or done >= self.settings.most_updates:
+            return False
+        moment_s = self._agreed_moment_s()
+        steady_s = STEADY_UPDATES * (self.period_ms or 0) / 1000
+        return moment_s is None or self.array.time_s - moment_s < steady_s
+
+    def fewest_updates(self) -> int:
+        """The updates of the least advanced tile with power."""
+        return min(map(self._updates, self._standing()), default=0)
 
     def done(self) -> bool:
         """Whether it has run for as long as its settings ask."""
@@ -204,7 +199,7 @@ class Emulation:
     def _limit_s(self) -> float:
         if self.settings.seconds is not None:
             return float("inf")
-        expected_s = self.settings.updates * (self.period_ms or 0) / 1000
+        expected_s = (self.settings.most_updates or self.settings.updates) * (self.period_ms or 0) / 1000
         boot_s = self.settings.boot_spread_s + (BOOTLOADER_S if self.settings.bootloader else 0.0)
         return boot_s + PATIENCE * expected_s + PATIENCE_S
 
@@ -214,6 +209,10 @@ class Emulation:
 
     def _updates(self, index: int) -> int:
         return self._voices[index].updates
+
+    def without_update(self) -> int:
+        """How many tiles with power have not reported an update."""
+        return sum(self._updates(index) == 0 for index in self._standing())
 
     def updates_done(self) -> int:
         """The updates that all tiles together have reported."""

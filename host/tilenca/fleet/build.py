@@ -15,8 +15,11 @@ from tilenca.base.signals import held_back
 from tilenca.base.stdio import warn
 
 
-def build() -> None:
+def build(sources: Path | None = None) -> None:
     """Builds the project's firmware unless it is up to date. Shows the build's output only if it fails.
+
+    Args:
+        sources: a folder with `include` and `src` to build instead of the project's, in its folder `build`.
 
     Raises:
         BuildError: there is no project, PlatformIO is missing, or the build failed.
@@ -30,6 +33,11 @@ def build() -> None:
         )
     warn("building the firmware")
     command = [pio, "run", "-e", paths.FIRMWARE_ENV]
+    elsewhere = {
+        f"PLATFORMIO_{part.upper()}_DIR": str(sources.resolve() / part)
+        for part in ("include", "src", "build")
+        if sources is not None
+    }
     building: subprocess.Popen[bytes] | None = None
     try:
         with held_back():
@@ -37,6 +45,7 @@ def build() -> None:
             building = subprocess.Popen(
                 command,
                 cwd=folder,
+                env=os.environ | elsewhere,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,

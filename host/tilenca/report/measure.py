@@ -23,23 +23,23 @@ LAST_LINES = 5
 
 
 @dataclass(frozen=True)
-class Job:
+class Call:
     """An experiment with its arguments, as a worker gets it."""
 
     key: str
     arguments: tuple[str, ...]
 
 
-def run_command(_shared: None, job: Job) -> dict[str, Any]:
+def run_command(_shared: None, call: Call) -> dict[str, Any]:
     """Runs a command of tilenca in a process of its own, and returns its JSON.
 
     Raises:
         TilencaError: the command failed; the message has its last lines.
     """
     with tempfile.TemporaryDirectory() as folder:
-        out = ["--out", str(Path(folder) / "out")] if job.arguments[0] == "sweep" else []
+        out = ["--out", str(Path(folder) / "out")] if call.arguments[0] == "sweep" else []
         done = subprocess.run(
-            [sys.executable, "-m", "tilenca.cli", *job.arguments, *out],
+            [sys.executable, "-m", "tilenca.cli", *call.arguments, *out],
             capture_output=True,
             text=True,
             check=False,
@@ -49,7 +49,7 @@ def run_command(_shared: None, job: Job) -> dict[str, Any]:
     if done.returncode not in (0, 1) or not done.stdout:
         last = " / ".join(done.stderr.strip().splitlines()[-LAST_LINES:])
         raise TilencaError(
-            f"{job.key}: tilenca {' '.join(job.arguments)} ended with {done.returncode}: {last}"
+            f"{call.key}: tilenca {' '.join(call.arguments)} ended with {done.returncode}: {last}"
         )
     result: dict[str, Any] = json.loads(done.stdout)
     return result
@@ -69,40 +69,40 @@ class Folder:
         path.mkdir(parents=True, exist_ok=True)
         self._software = repr(fingerprint())
 
-    def _file(self, job: Job) -> Path:
-        identity = json.dumps([job.arguments, self._software])
-        return self.path / f"{job.key}-{hashlib.sha256(identity.encode()).hexdigest()[:12]}.json"
+    def _file(self, call: Call) -> Path:
+        identity = json.dumps([call.arguments, self._software])
+        return self.path / f"{call.key}-{hashlib.sha256(identity.encode()).hexdigest()[:12]}.json"
 
-    def read(self, job: Job) -> dict[str, Any] | None:
-        """The result of a job; None: there is none, or it is damaged."""
+    def read(self, call: Call) -> dict[str, Any] | None:
+        """The result of a call; None: there is none, or it is damaged."""
         try:
-            result: dict[str, Any] = json.loads(self._file(job).read_text(encoding="utf-8"))
+            result: dict[str, Any] = json.loads(self._file(call).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
         return result
 
-    def write(self, job: Job, result: dict[str, Any]) -> None:
-        """Keeps the result of a job."""
-        write_whole(self._file(job), json.dumps(result).encode(), "make room there, or give another --out")
+    def write(self, call: Call, result: dict[str, Any]) -> None:
+        """Keeps the result of a call."""
+        write_whole(self._file(call), json.dumps(result).encode(), "make room there, or give another --out")
 
 
-def jobs_of(experiments: Sequence[Experiment], quick: bool) -> list[Job]:
-    """The jobs of a report, the longest first, so that no core waits for one that began late."""
+def calls_of(experiments: Sequence[Experiment], quick: bool) -> list[Call]:
+    """The calls of a report, the longest first, so that no core waits for one that began late."""
     first = ("suite", "paper.settings", "gap.tiles", "edges", "paper.tiles")
     rank = {key: number for number, key in enumerate(first)}
-    jobs = [Job(experiment.key, experiment.arguments(quick)) for experiment in experiments]
+    calls = [Call(experiment.key, experiment.arguments(quick)) for experiment in experiments]
     return sorted(
-        jobs, key=lambda job: min((n for key, n in rank.items() if job.key.startswith(key)), default=99)
+        calls, key=lambda call: min((n for key, n in rank.items() if call.key.startswith(key)), default=99)
     )
 
 
 def measure(
-    jobs: Sequence[Job], folder: Folder, cluster: Cluster | None, tell: Callable[[int], None]
+    calls: Sequence[Call], folder: Folder, cluster: Cluster | None, tell: Callable[[int], None]
 ) -> Results:
-    """The results of all jobs, by their keys; runs those that the folder lacks.
+    """The results of all calls, by their keys; runs those that the folder lacks.
 
     Args:
-        jobs: what to run.
+        calls: what to run.
         folder: where results are kept.
         cluster: where to run; None: nothing is missing.
         tell: called with the number of results that are there.
@@ -110,12 +110,12 @@ def measure(
     Raises:
         TilencaError: a command failed.
     """
-    results = {job.key: result for job in jobs if (result := folder.read(job)) is not None}
-    missing = [job for job in jobs if job.key not in results]
+    results = {call.key: result for call in calls if (result := folder.read(call)) is not None}
+    missing = [call for call in calls if call.key not in results]
 
-    def keep(job: Job, result: dict[str, Any]) -> None:
-        folder.write(job, result)
-        results[job.key] = result
+    def keep(call: Call, result: dict[str, Any]) -> None:
+        folder.write(call, result)
+        results[call.key] = result
         tell(len(results))
 
     tell(len(results))

@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
 from tilenca.shapes.file import Shape, Task, load_task
-from tilenca.shapes.sizes import Sizes, size_name
+from tilenca.shapes.sizes import Sizes
 from tilenca.shapes.skeleton import of_rows
 from tilenca.shapes.stretch import Rows
+from tilenca.shapes.trainable import extent, refuse_collisions, refuse_large_sizes, trainable
 from tilenca.shapes.variant import Variants
 
 Indices = NDArray[np.int64]
+MOST_STROKES = 250  # of a drawing whose strokes may be varied
 UNLABELLED, NO_CLASS = "", -1  # drawings whose tiles must agree on any class
 
 
@@ -245,44 +247,30 @@ def load_training_task(
     Raises:
         UsageError: as `load_drawings`.
     """
-    drawn = load_task(paths[0], max_classes)
+    drawn = trainable(paths[0], max_classes)
     sizes = drawn.sizes
-    _refuse_collisions(paths[0], drawn, sizes)
+    refuse_collisions(paths[0], drawn, sizes)
+    refuse_large_sizes(paths[0], drawn, sizes, stretch)
     more = tuple(path for path in sizes.drawn if path.resolve() not in [given.resolve() for given in paths])
     if stretch > 1:
         paths, more = [*paths, *more], ()
-    tasks = chain([drawn], (load_task(path, max_classes) for path in paths[1:]))
+    tasks = chain([drawn], (trainable(path, max_classes) for path in paths[1:]))
     joined = _join(paths, tasks, max_classes, labels)
     return replace(joined, variants=_variants_of(drawn)), replace(sizes, drawn=more)
 
 
 def _variants_of(task: Task) -> Variants | None:
-    """What the classes of a file may become; None where they are just its drawings."""
+    """What the classes of a file may become; None where they are just its drawings, or a drawing is an area.
+
+    An area has as many strokes as tiles, and a hand does not draw those one by one.
+    """
     if task.vary is None:
         return None
     # The skeletons of all drawings of a file share one unit square, so that narrow ones stay narrow.
-    rows, cols = max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
+    rows, cols = extent(task)
     unit = np.maximum((cols - 1, rows - 1), 1)
     drawn = [(shape.label, of_rows(shape.rows)) for shape in task.shapes]
+    if max(len(skeleton.edges) for _, skeleton in drawn) > MOST_STROKES:
+        return None
     scaled = [(label, replace(skeleton, points=skeleton.points / unit)) for label, skeleton in drawn]
     return Variants([*scaled, *task.forms], task.vary.sized((rows, cols), task.sizes), task.sizes.held_out)
-
-
-def _refuse_collisions(path: Path, task: Task, sizes: Sizes) -> None:
-    """Refuses sizes at which two classes are one drawing, and a held-out size that is nevertheless drawn."""
-    for size in (*sizes.trained, *sizes.more, *sizes.held_out):
-        seen: dict[tuple[str, ...], Shape] = {}
-        for shape in task.shapes:
-            for up in (True, False):
-                other = shape.stretched(size, up)
-                if other is None:
-                    continue
-                twin = seen.setdefault(other.rows, other)
-                if twin.label != other.label:
-                    raise UsageError(
-                        f"{path}: [sizes] '{twin.label}' and '{other.label}' are the same drawing at "
-                        f"{size_name(size)}; leave that size out, or redraw one of them"
-                    )
-    largest = max(len(s.rows) for s in task.shapes), max(len(s.rows[0]) for s in task.shapes)
-    if largest in sizes.held_out:
-        raise UsageError(f"{path}: [sizes] holds out {size_name(largest)}, which the shapes are drawn at")

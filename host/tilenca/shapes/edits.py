@@ -9,7 +9,7 @@ import numpy as np
 
 from tilenca.base.sides import OFFSETS
 from tilenca.shapes.cells import cells_of, connected, removable
-from tilenca.shapes.stretch import Rows, smallest
+from tilenca.shapes.stretch import Extent, Rows, smallest
 
 Cell = tuple[int, int]
 GIVE_UP = 300  # draws in a row without a new drawing
@@ -28,9 +28,16 @@ def rows_of(cells: Iterable[Cell]) -> Rows:
 def without_one(rows: Rows) -> Iterator[Rows]:
     """The drawing without one of its tiles, for every tile that leaves the others connected."""
     cells = cells_of(rows)
-    for gone in removable(cells):
-        if rest := [cell for cell in cells if cell != gone]:
-            yield rows_of(rest)
+    for row, col in removable(cells) if len(cells) > 1 else ():
+        yield _without(rows, row, col)
+
+
+def _without(rows: Rows, row: int, col: int) -> Rows:
+    """The drawing without the tile in this place, which is not its only one."""
+    rest = (*rows[:row], rows[row][:col] + "." + rows[row][col + 1 :], *rows[row + 1 :])
+    # Only at the border a row or a column can become empty.
+    inside = 0 < row < len(rows) - 1 and 0 < col < len(rows[0]) - 1
+    return rest if inside else rows_of(cells_of(rest))
 
 
 class Known:
@@ -44,25 +51,30 @@ class Known:
         self._drawings = list(drawings)
         self.forms: dict[Rows, str] = {}
         self._claims: dict[Rows, set[str]] = {}
+        self._damaged: dict[tuple[str, Rows], list[Rows]] = {}
         for label, rows in self._drawings:
             self.forms.setdefault(smallest(rows), label)
             for less in without_one(rows):
                 self._claims.setdefault(less, set()).add(label)
+        self._extents = {(len(form), len(form[0])) for form in self.forms}
 
-    def damaged(self, label: str, rows: Rows) -> list[Rows]:
+    def damaged(self, label: str, rows: Rows) -> Sequence[Rows]:
         """`rows` with one tile missing, where that is neither another whole drawing nor another's damage."""
-        return [
-            less
-            for less in dict.fromkeys(without_one(rows))
-            if self._claims.get(less, set()) == {label} and smallest(less) not in self.forms
-        ]
+        if (label, rows) not in self._damaged:
+            whole = {less for less, _ in self._whole_without_one(rows)}
+            self._damaged[label, rows] = [
+                less
+                for less in dict.fromkeys(without_one(rows))
+                if self._claims.get(less, set()) == {label} and less not in whole
+            ]
+        return self._damaged[label, rows]
 
     def lookalikes(self) -> dict[str, list[str]]:
         """For every label the others that it looks like when the wrong tile is missing."""
         found: dict[str, set[str]] = {}
         for label, rows in self._drawings:
-            for less in without_one(rows):
-                if (other := self.forms.get(smallest(less), label)) != label:
+            for _, other in self._whole_without_one(rows):
+                if other != label:
                     found.setdefault(label, set()).add(other)
         return {label: sorted(others) for label, others in found.items()}
 
@@ -71,19 +83,33 @@ class Known:
         return (
             rows in self._claims
             or smallest(rows) in self.forms
-            or any(smallest(less) in self.forms for less in without_one(rows))
+            or any(True for _ in self._whole_without_one(rows))
         )
+
+    def _whole_without_one(self, rows: Rows) -> Iterator[tuple[Rows, str]]:
+        """The whole drawings, at any size, that `rows` is with one tile missing, and their classes.
+
+        Of hundreds of tiles hardly one leaves the extent of a whole drawing; nothing is drawn for the others.
+        """
+        extent = Extent(rows)
+        if not any(extent.is_near(other) for other in self._extents):
+            return
+        for row, col in removable(cells_of(rows)):
+            if extent.without(row, col) in self._extents:
+                less = _without(rows, row, col)
+                if (label := self.forms.get(smallest(less))) is not None:
+                    yield less, label
 
 
 def grown(random: np.random.Generator, tiles: int, height: int, width: int) -> Rows:
     """A random connected drawing of at most `tiles` tiles within `height` x `width`."""
-    return _grow(random, tiles, {(row, col) for row in range(height) for col in range(width)})
+    return _grow(random, tiles, [(row, col) for row in range(height) for col in range(width)])
 
 
 def half(random: np.random.Generator, rows: Rows) -> Rows:
     """A random connected half of a drawing."""
     cells = cells_of(rows)
-    return _grow(random, max(1, len(cells) // 2), set(cells))
+    return _grow(random, max(1, len(cells) // 2), cells)
 
 
 def edited(random: np.random.Generator, rows: Rows, edits: int) -> Rows | None:
@@ -166,16 +192,19 @@ def some_strokes(drawings: Sequence[Rows], random: np.random.Generator) -> Calla
     return lambda: some_segments(random, strokes)
 
 
-def _grow(random: np.random.Generator, tiles: int, room: set[Cell]) -> Rows:
-    """Tiles added one after the other, each beside an earlier one."""
-    everywhere = sorted(room)
-    front = [everywhere[int(random.integers(len(everywhere)))]]
-    grown: set[Cell] = set()
+def _grow(random: np.random.Generator, tiles: int, room: Sequence[Cell]) -> Rows:
+    """Tiles added one after the other, each beside an earlier one; `room` in reading order."""
+    front = [room[int(random.integers(len(room)))]]
+    untouched = set(room) - {front[0]}
+    grown: list[Cell] = []
     while front and len(grown) < tiles:
         cell = front.pop(int(random.integers(len(front))))
-        grown.add(cell)
-        around = ((cell[0] + down, cell[1] + right) for down, right in OFFSETS)
-        front += [near for near in around if near in room and near not in grown and near not in front]
+        grown.append(cell)
+        for down, right in OFFSETS:
+            near = cell[0] + down, cell[1] + right
+            if near in untouched:
+                untouched.remove(near)
+                front.append(near)
     return rows_of(grown)
 
 

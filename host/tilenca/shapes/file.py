@@ -34,6 +34,7 @@ from tilenca.shapes.vary import Vary, read_forms, read_vary
 EMPTY = ".", " "
 KEYS = ("shape", "sizes", "vary", "forms", "orientations")
 UNKNOWN = "-"  # the label of drawings of no class
+MAX_TILES = 255  # of a drawing: as many as tiles can have different ids, which are one byte
 
 _HEADER = re.compile(r"\s*\[\[\s*shape\s*\]\]\s*(#.*)?$")
 _GRID = re.compile(r"""\s*grid\s*=\s*(?P<quotes>\"{3}|'{3})?(?P<row>.*?)\s*$""")
@@ -103,8 +104,16 @@ def find_shape(shapes: Sequence[Shape], name: str, path: Path) -> int:
     for number, shape in enumerate(shapes):
         if shape.name == name:
             return number
-    names = " ".join(shape.name for shape in shapes)
-    raise UsageError(f"{path}: no shape '{name}'; it has: {names}")
+    names = [shape.name for shape in shapes]
+    raise UsageError(f"{path}: no shape '{name}'{did_you_mean(name, names)}; it has: {' '.join(names)}")
+
+
+def too_large(shapes: Sequence[Shape]) -> str | None:
+    """What to say of the first drawing with more tiles than there are ids; None: there is no such drawing."""
+    for shape in shapes:
+        if (tiles := len(shape.cells)) > MAX_TILES:
+            return f"shape '{shape.name}' has {tiles} tiles; the most that ids allow are {MAX_TILES}"
+    return None
 
 
 def load_task(path: Path, max_classes: int | None = None) -> Task:

@@ -11,6 +11,9 @@ from itertools import pairwise
 
 Rows = tuple[str, ...]
 
+MOST_CHANGED = (
+    4  # rows that a missing tile makes necessary or superfluous: its own, both beside it, an empty one
+)
 _BITS = str.maketrans("#.", "10")
 
 
@@ -63,15 +66,54 @@ def smallest(rows: Rows) -> Rows:
     return _turned(_lowest(_turned(_lowest(rows))))
 
 
+class Extent:
+    """Rows and columns of `smallest` of a drawing, and of it less one tile, without drawing any.
+
+    Which rows go does not depend on which columns went before, so that rows and columns are counted apart.
+
+    Attributes:
+        whole: rows and columns with all tiles.
+    """
+
+    def __init__(self, rows: Rows) -> None:
+        self._rows = [int(row.translate(_BITS)[::-1], 2) for row in rows]
+        self._columns = [int(column.translate(_BITS)[::-1], 2) for column in _turned(rows)]
+        self.whole = _height(self._rows.copy()), _height(self._columns.copy())
+
+    def is_near(self, other: tuple[int, int]) -> bool:
+        """Whether this extent less one tile can be the other: that changes few rows and columns."""
+        return all(abs(mine - theirs) <= MOST_CHANGED for mine, theirs in zip(self.whole, other, strict=True))
+
+    def without(self, row: int, column: int) -> tuple[int, int]:
+        """The extent where the tile in this place is missing."""
+        rows, columns = self._rows.copy(), self._columns.copy()
+        rows[row] &= ~(1 << column)
+        columns[column] &= ~(1 << row)
+        return _height(rows), _height(columns)
+
+
+def _height(bits: list[int]) -> int:
+    """How many rows are left of these, without empty ones at the border."""
+    while bits and not bits[-1]:
+        bits.pop()
+    while bits and not bits[0]:
+        del bits[0]
+    return len(_kept(bits))
+
+
 def _lowest(rows: Rows) -> Rows:
     """Without the rows that their neighbours imply; the order in which they go makes no difference."""
-    bits = [int(row.translate(_BITS), 2) for row in rows]
+    return tuple(rows[index] for index in _kept([int(row.translate(_BITS), 2) for row in rows]))
+
+
+def _kept(bits: Sequence[int]) -> list[int]:
+    """The indices of the rows, a bit for each tile, that their neighbours do not imply."""
     kept: list[int] = []
-    for index in range(len(rows)):
+    for index in range(len(bits)):
         kept.append(index)
         while len(kept) > 2 and bits[kept[-2]] == bits[kept[-3]] & bits[kept[-1]]:
             del kept[-2]
-    return tuple(rows[index] for index in kept)
+    return kept
 
 
 def _without_a_row(rows: Rows) -> Iterator[Rows]:

@@ -22,7 +22,7 @@ class Image:
 
     Attributes:
         elf: the file.
-        defaults: its settings, see `tilenca.emulator.experiment.firmware_settings`.
+        defaults: its settings, see `tilenca.emulator.greeting.firmware_settings`.
         model: the model.
         folder: of the model, for messages.
         source: the file that `elf` is a copy of, for messages; None: it is none.

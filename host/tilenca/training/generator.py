@@ -14,7 +14,7 @@ from tilenca.shapes.batch import UNLABELLED, Drawings
 from tilenca.shapes.cells import connected, removable
 from tilenca.shapes.derive import known_of
 from tilenca.shapes.edits import rows_of
-from tilenca.shapes.file import UNKNOWN, Shape
+from tilenca.shapes.file import MAX_TILES, UNKNOWN, Shape
 from tilenca.shapes.form import make_form
 from tilenca.shapes.lattice import random_skeleton
 from tilenca.shapes.likeness import index_of
@@ -31,7 +31,6 @@ ONE_TILE, DEAD = (
 TORN = 0.3  # share of damaged drawings that may be torn apart
 CLEAR = 30  # tiles of a drawing in which one tile too many leaves no doubt
 MOST_EDITS = 3
-MOST_TILES = 255  # of a drawing, as many as tiles can have different ids
 FEW = 200  # drawings of a task that are compared with each other, tile by tile
 TRIES = 50
 
@@ -74,7 +73,7 @@ class Generator:
                 self._taken[variant.rows] = UNLABELLED
         self._sizes: list[Size] = extents if self._variants is None else []
         tallest = max(rows * cols for rows, cols in (*extents, self._vary.most or largest))
-        self.most_tiles = min(tallest, MOST_TILES) + 2 * MOST_EDITS
+        self.most_tiles = min(tallest, MAX_TILES) + 2 * MOST_EDITS
 
     def draw(self, kind: str, random: np.random.Generator) -> Shape:
         """A drawing of a kind; where none turns up, one of the files', or for no class one in doubt."""

@@ -15,7 +15,7 @@ import numpy as np
 import torch
 
 from tilenca.base.errors import InterruptedRunError, TilencaError
-from tilenca.base.signals import SIGNALS
+from tilenca.base.signals import SIGNALS, promising
 from tilenca.evaluation.evaluator import Evaluator
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
@@ -35,6 +35,9 @@ CHECK_RUNS = 10  # of each drawing in the measurements during training
 CLOSER_RUNS = 40  # of each drawing where all targets held with fewer
 HOLDS_TO_END = 3  # measurements in a row in which all targets must hold, to end early
 ENDING = (signal.SIGINT, *SIGNALS)
+SAVING = (
+    "keeps a checkpoint once this iteration, or a measurement after it, is done; Ctrl-C again ends without"
+)
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,18 @@ def train(job: Job, tell: Tell) -> Trained:
         InterruptedRunError: Ctrl-C; everything done so far is in the checkpoint.
         TilencaError: training diverged, or the checkpoint is of no use.
     """
+    prepared = prepare(job)  # an interrupt ends this at once: there is nothing new to keep
     with _interruptible() as interrupted:
-        return advance(job, tell, interrupted)
+        return _advance(job, *prepared, tell, interrupted)
+
+
+def prepare(job: Job) -> tuple[Trainer, Suite | None]:
+    """The trainer, and what it is measured with while it trains; for large drawings it takes a while.
+
+    Raises:
+        TilencaError: the checkpoint is of no use.
+    """
+    return make_trainer(job), _suite(job) if job.config.recipe.check_every else None
 
 
 def advance(job: Job, tell: Tell, interrupted: Callable[[], bool]) -> Trained:
@@ -99,10 +112,14 @@ def advance(job: Job, tell: Tell, interrupted: Callable[[], bool]) -> Trained:
         InterruptedRunError: it was interrupted; everything done so far is in the checkpoint.
         TilencaError: training diverged, or the checkpoint is of no use.
     """
-    trainer = make_trainer(job)
+    return _advance(job, *prepare(job), tell, interrupted)
+
+
+def _advance(
+    job: Job, trainer: Trainer, suite: Suite | None, tell: Tell, interrupted: Callable[[], bool]
+) -> Trained:
     recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
     check: tuple[int, int, float] | None = None
-    suite = _suite(job) if recipe.check_every else None
     while not trainer.done:
         trainer.step()
         if suite is not None and (trainer.iteration % recipe.check_every == 0 or trainer.done):
@@ -270,7 +287,8 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:
-        yield lambda: bool(caught)
+        with promising(SAVING):
+            yield lambda: bool(caught)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -1,8 +1,13 @@
 """The displays of emulated tiles, and a verdict on them."""
 
+from collections import Counter
+
 from tilenca.emulator.experiment import Emulation
+from tilenca.protocol.sentences import HelloSentence
 from tilenca.shapes.file import UNKNOWN, Task
 from tilenca.views.tiles import Picture
+
+RIGHT, NOT_YET, WRONG = "right", "not yet", "wrong"
 
 
 def take_picture(emulation: Emulation) -> Picture:
@@ -11,8 +16,26 @@ def take_picture(emulation: Emulation) -> Picture:
     return Picture(emulation.shape, tuple(t.segments for t in tiles), tuple(t.rgb for t in tiles))
 
 
-def verdict(emulation: Emulation) -> str:
-    """One line: whether the tiles are right, and since when."""
+def judge(emulation: Emulation, expected: int) -> str:
+    """Whether the tiles are `right`, or `not yet`, since they have not had their time, or `wrong`.
+
+    Args:
+        emulation: that has ended.
+        expected: the updates in which the tiles of such a drawing may agree.
+    """
+    if emulation.all_right:
+        return RIGHT
+    return NOT_YET if emulation.fewest_updates() < expected else WRONG
+
+
+def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str:
+    """One line: whether the tiles are right, and since when.
+
+    Args:
+        emulation: that has ended.
+        expected: see `judge`.
+        every: list each tile that shows something else.
+    """
     name, standing = emulation.shape.name, [tile for tile in emulation.array if tile.powered]
     count = len(standing)
     agreed_s, after_update_s = emulation.agreed_at_s(), emulation.agreed_after_update_s()
@@ -23,14 +46,34 @@ def verdict(emulation: Emulation) -> str:
             f"{name}: {tiles} {emulation.shape.label}, since {agreed_s:.2f} s after the last was switched on"
             f"{updated} (update {emulation.agreed_at_update()})"
         )
-    wrong = [
-        f"tile {tile.index + 1} {emulation.shown(tile) or 'nothing'}"
-        for tile in standing
-        if emulation.shown(tile) != emulation.shape.label
-    ]
-    model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""
-    total = f"{len(wrong)} of {count} tiles do not show {emulation.shape.label}{model}"
-    return f"{name}: WRONG, {total}: {', '.join(wrong)}"
+    shown = _counted(emulation)
+    if judge(emulation, expected) == NOT_YET:
+        done, late = emulation.fewest_updates(), emulation.without_update()
+        since = f"{shown} after {done} updates"
+        if late:
+            since = f"{late} of {count} tiles have done no update (a bootloader takes the first second)"
+        text = (
+            f"{name}: not yet, {since}; such a drawing may take {expected}: run on, with --updates {expected}"
+        )
+    else:
+        model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""
+        text = f"{name}: WRONG, {shown}{model}{'' if every else '; -v lists them'}"
+    if every:
+        other = [tile for tile in standing if emulation.shown(tile) != emulation.shape.label]
+        text += f": {', '.join(f'tile {t.index + 1} {_word(emulation.shown(t))}' for t in other)}"
+    return text
+
+
+def _counted(emulation: Emulation) -> str:
+    """How many tiles show what, like `26 of 28 tiles show 4, 2 a dash`."""
+    answers = Counter(emulation.answers())
+    right = answers.pop(emulation.shape.label, 0)
+    first = f"{right} of {right + answers.total()} tiles show {emulation.shape.label}"
+    return ", ".join([first, *(f"{count} {_word(label)}" for label, count in answers.most_common())])
+
+
+def _word(label: str) -> str:
+    return {"": "nothing", UNKNOWN: "a dash"}.get(label, label)
 
 
 def mismatch(emulation: Emulation, task: Task) -> str | None:
@@ -40,7 +83,12 @@ def mismatch(emulation: Emulation, task: Task) -> str | None:
     classes = len(task.labels), len({*task.labels, UNKNOWN})
     if hello is None or emulation.all_right or (hello.classes in classes and not foreign):
         return None
+    return foreign_firmware(hello, task)
+
+
+def foreign_firmware(hello: HelloSentence, task: Task) -> str:
+    """What to say of a firmware that was made for other drawings."""
     return (
-        f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)}); export "
-        "the model trained on that file and build: tilenca export --model DIR && pio run"
+        f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)}); take "
+        "the one trained on that file: tilenca export --model DIR --build, then tilenca emulate --model DIR"
     )

@@ -1,4 +1,4 @@
-"""How training looks: a bar for every seed on a terminal, a line now and then elsewhere; both on stderr."""
+"""How training looks: a bar for every seed on a terminal, a line a minute elsewhere; both on stderr."""
 
 import sys
 import time
@@ -11,7 +11,7 @@ from rich.progress import TimeRemainingColumn
 from tilenca.training.progress import Progress, Tell
 from tilenca.views.progress import show_bars
 
-LINES = 10  # per seed, where there is no terminal
+LINE_EVERY_S = 60.0  # of each seed, where there is no terminal
 ROWS = 10  # of a measurement per line, likewise
 
 
@@ -28,18 +28,20 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
         for seed in seeds:
             bars.add(f"{seed}", f"seed {seed}", total, f"0/{total}", begun=False)
         first: dict[int, tuple[float, int]] = {}
-        printed = dict.fromkeys(seeds, 0)
+        printed: dict[int, float] = {}
 
         def tell(news: Progress) -> None:
             if news.seed not in first:
                 first[news.seed] = time.monotonic(), news.iteration
+            now_s = time.monotonic()
             begun, iteration = first[news.seed]
-            rate = (news.iteration - iteration) / max(time.monotonic() - begun, 1e-9)
-            note = f"{news.iteration}/{total}  {_note(news, rate)}"
-            bars.move(f"{news.seed}", news.iteration, note)
-            if not console.is_terminal and news.iteration * LINES // total > printed[news.seed]:
-                printed[news.seed] = news.iteration * LINES // total
-                print(f"seed {news.seed}: {note}", file=sys.stderr, flush=True)
+            rate = (news.iteration - iteration) / max(now_s - begun, 1e-9)
+            bars.move(f"{news.seed}", news.iteration, f"{news.iteration}/{total}  {_note(news, rate)}")
+            due = now_s - printed.get(news.seed, -LINE_EVERY_S) >= LINE_EVERY_S or news.iteration == total
+            if not console.is_terminal and due:
+                printed[news.seed] = now_s
+                left_s = (total - news.iteration) / rate if rate else None
+                print(f"seed {news.seed}: {_line(news, total, left_s)}", file=sys.stderr, flush=True)
 
         yield tell
 
@@ -62,6 +64,18 @@ def show_measuring(where: str) -> Iterator[Callable[[str], None]]:
                 print(f"{told} rows measured", file=sys.stderr, flush=True)
 
         yield tell
+
+
+def _line(news: Progress, total: int, left_s: float | None) -> str:
+    """The progress as a sentence, for a person and a log."""
+    line = f"{news.iteration} of {total} iterations; all tiles right on {news.agreement:.0%} of the drawings"
+    if news.check is not None:
+        held, asked, _ = news.check
+        line += f"; {held} of {asked} targets met"
+    if left_s is not None and news.iteration < total:
+        left = "less than a minute" if left_s < 60 else f"about {left_s / 60:.0f} min"
+        line += f"; {left} left{', less if the targets hold early' if news.check else ''}"
+    return line
 
 
 def _note(news: Progress, rate: float) -> str:

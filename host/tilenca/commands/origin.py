@@ -1,0 +1,96 @@
+"""A model knows what it was made of: its shape files, and which model a firmware carries."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.base.stdio import warn
+from tilenca.model.file import Model, load_model
+from tilenca.shapes.file import UNKNOWN
+
+NEAR = 3  # folders above a model in which its shape files are looked for
+
+
+def shapes_or_own(given: list[Path] | None, model: Model, folder: Path) -> list[Path]:
+    """The files that were given, else those that the model was trained on."""
+    return given or own_shapes(model, folder)
+
+
+def own_shapes(model: Model, folder: Path) -> list[Path]:
+    """The shape files that a model was trained on; the digits where its metadata name none.
+
+    Args:
+        model: with metadata.
+        folder: that it was read from; the files are looked for there too.
+
+    Raises:
+        UsageError: a file is not there any more; the message says what to give.
+    """
+    hashes = _hashes(model)
+    named = model.metadata.get("shapes") or list(hashes)[:1]
+    if not (isinstance(named, list) and all(isinstance(name, str) for name in named) and named):
+        return [paths.DEFAULT_SHAPES]
+    return [_find(name, hashes.get(Path(name).name), folder) for name in named]
+
+
+def _hashes(model: Model) -> dict[str, str]:
+    """The SHA-256 of each file that the metadata name, by its name."""
+    with suppress(TypeError, KeyError):
+        return {str(source["file"]): str(source["sha256"]) for source in model.metadata.get("sources", [])}
+    return {}
+
+
+def _find(name: str, sha256: str | None, folder: Path) -> Path:
+    """The file of that name, best with the content that the model was trained on."""
+    roots = [Path(), *([paths.PROJECT] if paths.PROJECT else []), paths.ROOT]
+    roots += [folder, *folder.resolve().parents[:NEAR]]
+    found = [path for root in roots if (path := root / name).is_file()]
+    found += [path for path in [paths.SHAPES / Path(name).name] if path.is_file() and path not in found]
+    for path in found:
+        if sha256 is None or hashlib.sha256(path.read_bytes()).hexdigest() == sha256:
+            return path
+    if not found:
+        raise UsageError(f"{folder}: was trained on {name}, which is not there; give the file with --shapes")
+    if (
+        not found[0].resolve().is_relative_to(paths.SHAPES.resolve())
+    ):  # what ships together is tested together
+        warn(f"note: {found[0]} has changed since {folder} was trained on it")
+    return found[0]
+
+
+def model_with_id(model_id: int, first: Path | None = None) -> tuple[Model, Path] | None:
+    """The model of that id and its folder: among those of the project, and those that come with tilenca.
+
+    Args:
+        model_id: of its weights.
+        first: a folder to look in before.
+    """
+    for about in [*([first / "model.json"] if first else []), *_descriptions()]:
+        with suppress(OSError, ValueError, AttributeError):
+            if json.loads(about.read_text(encoding="utf-8")).get("model_id") != f"{model_id:04X}":
+                continue
+            with suppress(UsageError):
+                return load_model(about.parent), about.parent
+    return None
+
+
+def _descriptions() -> Iterator[Path]:
+    roots = [paths.MODELS]
+    if paths.PROJECT is not None:
+        roots += [paths.PROJECT / "models", paths.PROJECT / "build" / "models"]
+    for root in dict.fromkeys(roots):
+        yield from sorted(root.glob("*/model.json"))
+
+
+def without_a_dash(model: Model) -> str | None:
+    """A warning about a model that knows no drawings but its own; None where it shows a dash on others."""
+    if UNKNOWN in model.labels:
+        return None
+    return (
+        f"note: model {model.model_id:04X} has no class for other drawings, and shows one of its own labels "
+        f"({' '.join(model.labels)}) on any; --recipe full trains a dash for them"
+    )

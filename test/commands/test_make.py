@@ -1,0 +1,63 @@
+"""From drawings to tiles in one command."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from support.alone import alone
+from tilenca.base import paths
+from tilenca.cli import main
+from tilenca.emulator.greeting import greeting
+from tilenca.model.file import load_model
+
+QUICK = ("--recipe", "smoke", "--hidden", "12", "--iterations", "30")
+
+
+def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
+    two_shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "mine"
+    words = ["make", str(two_shapes), "--out", str(out), *QUICK]
+    with alone("platformio"):
+        first = main(words)
+    said = capsys.readouterr()
+    for number in (1, 2, 3, 4):
+        assert f"[{number}/4] " in said.err
+    assert "at most about 1 min, less if the targets hold early" in said.err
+    assert f"next: tilenca emulate --model {out}" in said.err
+    assert first in (0, 1), "thirty iterations may leave tiles wrong"
+    hello = greeting(paths.model_elf(out))
+    assert hello is not None
+    assert hello.model_id == load_model(out).model_id
+    with alone("platformio"):
+        assert main(words) == first
+    assert "was trained on this file already" in capsys.readouterr().err
+
+
+def test_what_ships_and_what_is_there_is_not_overwritten(
+    two_shapes: Path, trained_model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["make", str(two_shapes), "--out", str(paths.MODELS / "hex"), *QUICK]) == 2
+    assert "comes with tilenca and stays as it is" in capsys.readouterr().err
+    other = tmp_path / "other.toml"
+    other.write_text(two_shapes.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    assert main(["make", str(other), "--out", str(trained_model), *QUICK]) == 2
+    assert "holds a model of another file or recipe" in capsys.readouterr().err
+
+
+def test_bad_drawings_are_refused_before_anything_is_trained(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    block = "\n".join(["#" * 40] * 40)
+    file = tmp_path / "large.toml"
+    file.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n', encoding="utf-8")
+    assert main(["make", str(file), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said == f"tilenca: {file}: shape '0' has 1600 tiles; the most that ids allow are 255\n"
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_trained_model_names_its_recipe(trained_model: Path) -> None:
+    about = json.loads((trained_model / "model.json").read_text(encoding="utf-8"))
+    assert about["metadata"]["recipe_name"] == "smoke"

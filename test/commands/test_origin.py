@@ -1,0 +1,96 @@
+"""A model's shape files, and the model of a firmware."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tilenca.base import paths
+from tilenca.base.errors import UsageError
+from tilenca.commands.origin import model_with_id, own_shapes, shapes_or_own, without_a_dash
+from tilenca.model.file import Model, load_model
+
+DIGITS = load_model(paths.DEFAULT_MODEL)
+
+
+def made_of(metadata: Mapping[str, Any]) -> Model:
+    return replace(DIGITS, metadata=metadata)
+
+
+def source(path: Path) -> dict[str, str]:
+    return {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+
+
+@pytest.mark.parametrize(
+    "folder", sorted(paths.MODELS.glob("*/model.json")), ids=lambda path: path.parent.name
+)
+def test_every_shipped_model_knows_its_files_and_its_id(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = load_model(folder.parent)
+    for path in own_shapes(model, folder.parent):
+        assert path.is_file()
+        assert path.name in [each["file"] for each in model.metadata["sources"]]
+    found = model_with_id(model.model_id)
+    assert found is not None
+    assert found[0].model_id == model.model_id
+    assert capsys.readouterr().err == ""
+
+
+def test_files_that_are_given_come_first() -> None:
+    given = [Path("mine.toml")]
+    assert shapes_or_own(given, DIGITS, paths.DEFAULT_MODEL) == given
+    assert shapes_or_own(None, DIGITS, paths.DEFAULT_MODEL) == own_shapes(DIGITS, paths.DEFAULT_MODEL)
+
+
+def test_a_model_of_ones_own_finds_its_file_from_anywhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shapes, folder = tmp_path / "project" / "mine.toml", tmp_path / "project" / "models" / "mine"
+    folder.mkdir(parents=True)
+    shapes.write_text("first")
+    model = made_of({"shapes": ["mine.toml"], "sources": [source(shapes)]})
+    assert own_shapes(model, folder) == [shapes]
+    assert capsys.readouterr().err == ""
+    shapes.write_text("second")
+    assert own_shapes(model, folder) == [shapes]
+    assert f"note: {shapes} has changed since {folder} was trained on it" in capsys.readouterr().err
+    shapes.unlink()
+    with pytest.raises(UsageError, match=r"was trained on mine\.toml, which is not there; give the file"):
+        own_shapes(model, folder)
+
+
+def test_the_file_with_the_content_of_the_training_is_preferred(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    other, same = tmp_path / "mine.toml", tmp_path / "models" / "mine.toml"
+    same.parent.mkdir()
+    other.write_text("other")
+    same.write_text("same")
+    model = made_of({"shapes": ["mine.toml"], "sources": [source(same)]})
+    assert own_shapes(model, same.parent) == [same]
+
+
+@pytest.mark.parametrize("metadata", [{}, {"shapes": 7}, {"shapes": [7]}, {"sources": [7]}, {"sources": 7}])
+def test_without_a_word_about_files_they_are_the_digits(metadata: dict[str, object], tmp_path: Path) -> None:
+    assert own_shapes(made_of(metadata), tmp_path) == [paths.DEFAULT_SHAPES]
+
+
+def test_an_unknown_id_has_no_model_and_a_folder_may_be_asked_first(tmp_path: Path) -> None:
+    other = replace(DIGITS, labels=DIGITS.labels[::-1])
+    assert model_with_id(other.model_id) is None
+    other.save(tmp_path)
+    found = model_with_id(other.model_id, tmp_path)
+    assert found is not None
+    assert found[1] == tmp_path
+
+
+def test_a_model_without_a_dash_says_so() -> None:
+    assert without_a_dash(DIGITS) is None
+    hexadecimal = load_model(paths.MODELS / "hex")
+    assert "has no class for other drawings" in str(without_a_dash(hexadecimal))

@@ -1,0 +1,57 @@
+"""A model's firmware beside its files."""
+
+from pathlib import Path
+
+import pytest
+
+from support.alone import alone
+from tilenca.base import paths
+from tilenca.base.errors import BuildError
+from tilenca.commands import own_firmware
+from tilenca.commands.own_firmware import build_beside, image_of
+from tilenca.emulator.greeting import greeting
+from tilenca.model.file import load_model
+
+
+def project_files() -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in paths.FIRMWARE.rglob("*") if path.is_file()}
+
+
+def test_the_image_carries_the_model_and_the_projects_own_firmware_stays(tmp_path: Path) -> None:
+    before, model = project_files(), load_model(paths.MODELS / "hex")
+    with alone("platformio"):
+        image = build_beside(model, tmp_path)
+    assert image == image_of(tmp_path) == paths.model_elf(tmp_path)
+    hello = greeting(image)
+    assert hello is not None
+    assert hello.model_id == model.model_id
+    assert project_files() == before
+
+
+def test_sources_that_are_current_stay_and_others_are_brought_up_to_date(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built: list[Path] = []
+    monkeypatch.setattr(own_firmware, "build", built.append)
+    model = load_model(paths.MODELS / "hex")
+    build_beside(model, tmp_path)
+    out = paths.model_firmware(tmp_path)
+    sources = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()}
+    main, stray = out / "src" / "main.cpp", out / "src" / "stray.cpp"
+    main.write_text("changed")
+    stray.write_text("")
+    build_beside(model, tmp_path)
+    assert main.read_bytes() == (paths.FIRMWARE / "src" / "main.cpp").read_bytes()
+    assert not stray.exists()
+    assert built == [out, out]
+    now = {path: path.stat().st_mtime_ns for path in out.rglob("*") if path.is_file()}
+    assert now.keys() == sources.keys()
+    assert [path for path in now if now[path] != sources[path]] == [main]
+
+
+def test_a_model_without_a_build_says_how_to_get_one(tmp_path: Path) -> None:
+    with pytest.raises(
+        BuildError, match=r"no firmware was built of it; run: tilenca export --model .* --build"
+    ):
+        image_of(tmp_path)
+    assert image_of(paths.DEFAULT_MODEL) == paths.firmware_elf()
