@@ -26,7 +26,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
-	imports types budgets sanitize docs format train bench sweep report web wheel clean
+	imports types budgets sanitize docs format train bench sweep report web page-bundle wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -56,8 +56,11 @@ web: setup-web ## build the emulator and the simulator for browsers, into build/
 	@$(TOOL) setup.web
 	@$(TOOL) release.web_model models/digits build/web/bundle/digits.json
 
+page-bundle: web ## lay out the page that needs no server of its own, into build/page-bundle
+	@$(TOOL) release.page_bundle build/web/bundle build/page-bundle
+
 test-web: web setup-test ## build for browsers, and run the tests of that
-	@$(PYTHON) -m pytest -n 0 test/web
+	@$(PYTHON) -m pytest -n 0 test/web test/browser/test_static_bundle.py
 
 check: static test ## what to run before every commit: format, lint, imports, types, budgets, documentation, tests
 
@@ -129,5 +132,5 @@ wheel: setup-test ## build the source archive and the wheel into dist/, with the
 	@$(TOOL) release.wheel
 
 clean: ## remove what was built; .venv and PlatformIO's packages stay
-	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel build/web
+	@rm -rf .pio dist build/release build/debug build/sanitize build/strict build/test build/models build/docs build/wheel build/web build/page-bundle
 	@rm -rf .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -10,15 +10,22 @@ import { Drawings } from "./components/drawings.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
 import { Notice } from "./components/notice.js";
+import { Share } from "./components/share.js";
+import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
+import { openEmulator } from "./stream/emulator.js";
+import { MOST_DEEDS } from "./stream/deeds.js";
 import { faultsNow, kindsChangedBy } from "./stream/faults.js";
-import { openSocket } from "./stream/socket.js";
+import { Recorder } from "./stream/recorder.js";
+import { openRecording } from "./stream/recording.js";
+import { openServer } from "./stream/socket.js";
 import { BROKE_OFF, TOO_MANY_PAGES, WRONG_TOKEN } from "./stream/source.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
 
-const tiles = new Tiles();
+export const tiles = new Tiles();
+const recorder = new Recorder();
 /** @type {Start | null} */
 let start = null;
 let noise = 0;
@@ -28,6 +35,8 @@ let lastRefused = "";
 let given = [];
 /** @type {Set<string>} */
 const handled = new Set();
+/** What the run began with. @type {Start | null} */
+let opened = null;
 
 /** @param {Command} command */
 function send(command) {
@@ -70,10 +79,15 @@ const deeds = {
     send({ do: "pace", speed, paused });
   },
   step: () => send({ do: "step", seconds: tiles.stepS }),
+  /** One update back. */
+  back: () => {
+    if (tiles.end !== null) timeline.go(timeline.aim - tiles.stepS);
+  },
   restart() {
     if (!start) return;
     remember();
     start.until = null;
+    start.deeds = [];
     open(start);
   },
   /** @param {number} loss */
@@ -92,7 +106,18 @@ const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
 const agreement = new Agreement(tiles);
+const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }));
 const verdict = new Verdict();
+new Share(byId("top-deeds"), tiles, recorder, {
+  link: linkUntilNow,
+  words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
+  say: (text) => notice.say(text),
+  replay(events) {
+    source.close();
+    notice.say("A recording: go to any time of it. Reload the page for running tiles.");
+    source = openRecording(events, listener);
+  },
+});
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing));
 listenToKeys(bar, deeds);
 
@@ -108,22 +133,35 @@ function slideUnder(drawing) {
 function open(wanted) {
   deeds.select(null);
   given = wanted.faults;
+  opened = { ...wanted };
   handled.clear();
+  for (const { deed } of wanted.deeds) for (const kind of kindsChangedBy(deed)) handled.add(kind);
   noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
   bar.showNoise(noise);
   const { cells, seed, speed, faults, spread, until } = wanted;
-  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until });
+  const planned = wanted.deeds.map(({ time, deed }) => [time, deed]);
+  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until, deeds: planned });
+}
+
+/** The address of the run as it was, with all that hands did, until now. */
+function linkUntilNow() {
+  if (!opened || tiles.source === "recording" || tiles.deeds.length > MOST_DEEDS) return location.href;
+  const until = Number(tiles.time.toFixed(6));
+  const deeds = tiles.deeds.filter(({ time }) => time <= until);
+  const run = { ...opened, speed: start?.speed ?? opened.speed, model: start?.model ?? "", until, deeds };
+  return new URL(writeAddress(run, tiles.drawings) + location.hash, location.href).href;
 }
 
 /** Notes what lies on the board now, in `start` and in the address. */
 function remember() {
+  if (tiles.source === "recording") return;
   checkModel();
   const laid = tiles.laid();
   if (!start || !laid.length) return;
   start.cells = laid.map((tile) => tile.place);
   const isUp = tiles.time > start.spread + 0.1;
   if (isUp) start.faults = faultsNow(tiles, given, handled, noise);
-  const address = writeAddress(start, tiles.drawings);
+  const address = writeAddress({ ...start, deeds: [] }, tiles.drawings);
   if (address !== location.search) history.replaceState(null, "", address + location.hash);
   drawings.mark(known(start.cells, tiles.drawings)?.name ?? "");
 }
@@ -133,6 +171,7 @@ function show(events) {
   const now = performance.now();
   const first = events.find((event) => event.stream !== undefined);
   tiles.take(events);
+  recorder.take(events);
   if (first) {
     drawings.fill(tiles.drawings, (label) => tiles.look(label).rgb);
     start = start ?? readAddress(location.search, tiles.drawings);
@@ -149,6 +188,7 @@ function show(events) {
   bar.update();
   verdict.update(tiles, now);
   agreement.update(now);
+  timeline.update(now);
 }
 
 /** Says so where the address was made with another model. */
@@ -159,17 +199,15 @@ function checkModel() {
   start.model = modelId;
 }
 
-const token = new URLSearchParams(location.hash.slice(1)).get("token");
-const url = new URL("stream", location.href);
-url.protocol = url.protocol.replace("http", "ws");
-url.search = token ? new URLSearchParams({ token }).toString() : "";
-url.hash = "";
-
-const source = openSocket(url.href, {
+/** @type {import("./stream/source.js").Listener} */
+const listener = {
   onEvents: show,
   onOpen: () => notice.clear(),
   onLost: (seconds, code) => notice.stay(lostWords(code, `trying again in ${Math.ceil(seconds)} s`)),
-});
+};
+// The document says what stands behind it: `tilenca page`, or the emulator beside it in the bundle.
+const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content");
+let source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
 
 /** @param {number} code of the end of the connection @param {string} again when it is tried again */
 function lostWords(code, again) {

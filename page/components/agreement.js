@@ -65,7 +65,7 @@ export class Agreement {
     const { counts, total } = tiles.count();
     const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
     const share = total ? Math.round((100 * most) / total) : 0;
-    const changes = tiles.changeCount;
+    const changes = tiles.history.changeCount;
     setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind`);
     this.draw();
   }
@@ -99,6 +99,9 @@ export class Agreement {
     pen.lineWidth = 1;
     pen.font = ink.font;
     pen.textBaseline = "bottom";
+    if (tiles.time < tiles.history.known) {
+      pen.fillRect(x(tiles.time) - 1, 0, 2, height - AXIS); // now, with what comes next beside it
+    }
     const step = roundStep(span, Math.max(2, width / 110));
     for (let time = Math.ceil(begin / step) * step; x(time) < width - 8; time += step) {
       pen.beginPath();
@@ -114,14 +117,14 @@ export class Agreement {
   /** @param {(time: number) => number} x @param {number} height @param {number} begin @param {string} dark */
   drawBands(x, height, begin, dark) {
     const { pen, tiles } = this;
-    const { samples } = tiles;
+    const { samples } = tiles.history;
     let first = samples.length - 1;
     while (first > 0 && samples[first].time > begin) first--;
     const labels = tiles.looks.map((look) => look.label);
     for (let i = Math.max(first, 0); i < samples.length; i++) {
       const { counts, total, time } = samples[i];
       const from = Math.max(0, Math.round(x(time)));
-      const to = Math.round(x(i + 1 < samples.length ? samples[i + 1].time : tiles.time));
+      const to = Math.round(x(i + 1 < samples.length ? samples[i + 1].time : Math.max(tiles.time, tiles.history.known)));
       if (!total || to <= from) continue;
       let y = height;
       for (const label of labels) {
@@ -141,8 +144,8 @@ export class Agreement {
   /** @param {(time: number) => number} x @param {number} top @param {number} begin */
   drawMarks(x, top, begin) {
     const { pen, tiles } = this;
-    for (let i = tiles.changes.length - 1; i >= 0 && tiles.changes[i].time >= begin; i--) {
-      const { time, from, to } = tiles.changes[i];
+    for (let i = tiles.history.changes.length - 1; i >= 0 && tiles.history.changes[i].time >= begin; i--) {
+      const { time, from, to } = tiles.history.changes[i];
       if (from === "" || to === "") continue;
       pen.fillStyle = cssColour(tiles.look(to).rgb);
       pen.beginPath();

@@ -41,6 +41,7 @@ export function speedWords(speed) {
  *   tool: (tool: Tool) => void,
  *   pace: (speed: number, paused: boolean) => void,
  *   step: () => void,
+ *   back: () => void,
  *   restart: () => void,
  *   surprise: () => void,
  *   noise: (loss: number) => void,
@@ -90,7 +91,7 @@ export class Bar {
         element("label", { class: "slide" }, element("span", { class: "caption" }, "Lost bytes"), this.noise, this.noiseWords)),
     );
     top.append(
-      element("button", { type: "button", title: "Switch all tiles off and on (R)", onclick: () => deeds.restart() },
+      element("button", { type: "button", class: "compact", title: "Switch all tiles off and on (R)", onclick: () => deeds.restart() },
         icon(ICONS.again), element("span", {}, "Start over")),
       element("button", { type: "button", class: "primary", title: "Something else happens (S)", onclick: () => deeds.surprise() },
         icon(ICONS.dice), element("span", {}, "Surprise me")),

@@ -15,10 +15,12 @@ export function listenToKeys(bar, deeds) {
     r: () => deeds.restart(),
     s: () => deeds.surprise(),
     ".": () => deeds.step(),
+    ",": () => deeds.back(),
     " ": () => bar.toggle(),
   };
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    if (document.querySelector("dialog[open]")) return;
     const target = /** @type {HTMLElement} */ (event.target);
     if (event.key === " " && target.closest("button, input")) return;
     const act = keys[event.key];

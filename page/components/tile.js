@@ -6,12 +6,12 @@ import { cssColour } from "../stream/led.js";
 import { element, setText, svg } from "./dom.js";
 
 // A digit of 100 x 100, segments a to g, and the point.
-const SEGMENTS = [
+export const SEGMENTS = [
   "M36 20H64", "M69 25V45", "M69 55V75", "M36 80H64", "M31 55V75", "M31 25V45", "M37 50H63",
 ];
 const SIDE_WORDS = ["north", "east", "south", "west"];
 /** Where the lamps are. */
-const LAMPS = [[50, 8], [92, 50], [50, 92], [8, 50]];
+export const LAMPS = [[50, 8], [92, 50], [50, 92], [8, 50]];
 
 export class TileView {
   /** @param {Tile} tile */

@@ -22,7 +22,7 @@ export function verdictOn(tiles) {
   const ranked = [...counts].sort((a, b) => b[1] - a[1]);
   if (total === 0) {
     const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
-    const boot = tiles.laid().length > 0 && tiles.changes.length === 0;
+    const boot = tiles.laid().length > 0 && tiles.history.changes.length === 0;
     return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
   }
   if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };

@@ -1,10 +1,11 @@
 // The address of the page: what a run begins with, so that a reload or a shared link gives the same run.
 
 /** @import { Drawing, Place } from "./source.js" */
+import { MOST_DEEDS, deedText, parseDeed } from "./deeds.js";
 
 /**
  * @typedef {{cells: Place[], seed: number, speed: number, faults: string[], spread: number, until: number | null,
- *   model: string}} Start
+ *   model: string, deeds: import("./deeds.js").Deed[]}} Start
  */
 
 export const DEFAULT_SPEED = 0.1;
@@ -66,6 +67,7 @@ export function readAddress(query, drawings) {
     spread: numberIn(given.get("spread"), 0, 3600, DEFAULT_SPREAD_S),
     until: Number.isNaN(until) ? null : until,
     model: given.get("model") ?? "",
+    deeds: given.getAll("deed").flatMap(parseDeed).slice(0, MOST_DEEDS),
   };
 }
 
@@ -85,5 +87,6 @@ export function writeAddress(start, drawings) {
   if (start.spread !== DEFAULT_SPREAD_S) query.set("spread", String(start.spread));
   if (start.until !== null) query.set("until", String(start.until));
   if (start.model) query.set("model", start.model);
-  return `?${query.toString().replaceAll("%2F", "/").replaceAll("%40", "@").replaceAll("%3D", "=")}`;
+  for (const deed of start.deeds) query.append("deed", deedText(deed));
+  return `?${query.toString().replaceAll("%2C", ",").replaceAll("%2F", "/").replaceAll("%40", "@").replaceAll("%3D", "=")}`;
 }

@@ -1,12 +1,26 @@
 // The source that is a server: a WebSocket, opened again whenever it is lost.
 
 /** @import { Command, Listener, Source, StreamEvent } from "./source.js" */
+import { Batches } from "./batches.js";
 import { BROKE_OFF, WRONG_TOKEN } from "./source.js";
 
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 // After these another try would end the same way.
 const FINAL = [WRONG_TOKEN, BROKE_OFF];
+
+/**
+ * The stream of the server that the page has come from, with the token of its address.
+ * @param {Listener} listener
+ */
+export function openServer(listener) {
+  const token = new URLSearchParams(location.hash.slice(1)).get("token");
+  const url = new URL("stream", location.href);
+  url.protocol = url.protocol.replace("http", "ws");
+  url.search = token ? new URLSearchParams({ token }).toString() : "";
+  url.hash = "";
+  return openSocket(url.href, listener);
+}
 
 /**
  * @param {string} url of the stream, ws: or wss:
@@ -18,19 +32,7 @@ export function openSocket(url, listener) {
   let socket = null;
   let waitMs = FIRST_WAIT_MS;
   let closed = false;
-  /** @type {StreamEvent[]} */
-  let events = [];
-  let batch = 0;
-  let isDue = false;
-
-  function paint() {
-    if (!isDue) return;
-    isDue = false;
-    const shown = events;
-    events = [];
-    listener.onEvents(shown);
-    send({ do: "seen", batch });
-  }
+  const batches = new Batches(listener.onEvents, send);
 
   /** @param {Command} command */
   function send(command) {
@@ -39,26 +41,18 @@ export function openSocket(url, listener) {
 
   function connect() {
     socket = new WebSocket(url);
-    socket.onopen = () => {
-      batch = 0;
-    };
     socket.onmessage = (message) => {
       const told = JSON.parse(message.data);
       if (told.events.some((/** @type {StreamEvent} */ event) => event.stream !== undefined)) {
         waitMs = FIRST_WAIT_MS; // not as soon as it is open: a server that is full opens it to say so
         listener.onOpen();
       }
-      events.push(...told.events);
-      batch = told.batch;
-      if (!isDue) {
-        isDue = true;
-        requestAnimationFrame(paint);
-      }
+      batches.take(told);
     };
     socket.onclose = ({ code }) => {
       socket = null;
       if (closed) return;
-      paint(); // what it said last comes before the news that it has gone
+      batches.paint(); // what it said last comes before the news that it has gone
       listener.onLost(waitMs / 1000, code);
       if (FINAL.includes(code)) return;
       setTimeout(connect, waitMs);

@@ -4,6 +4,7 @@
 /** @import { LinkSentence, TimeSentence } from "./sentences.js" */
 import { parseFrame } from "./frames.js";
 import { parseSentence } from "./sentences.js";
+import { History } from "./history.js";
 import { OFFSETS, SIDES, STREAM_VERSION } from "./source.js";
 
 /**
@@ -17,16 +18,8 @@ import { OFFSETS, SIDES, STREAM_VERSION } from "./source.js";
  *
  * @typedef {Tile & {place: Place}} LaidTile
  *
- * A tile shows another label than before; "" for none.
- * @typedef {{time: number, port: string, from: string, to: string}} Change
- *
- * How many tiles show each label from a time on; dark ones under "".
- * @typedef {{time: number, counts: Map<string, number>, total: number}} Sample
- *
  * @typedef {{from: string, side: number, bytes: number}} Pulse
  */
-
-const MOST_KEPT = 4000;
 
 /** @param {string} port @returns {Tile} */
 function newTile(port) {
@@ -50,19 +43,23 @@ export class Tiles {
     this.looks = [];
     /** @type {Drawing[]} */
     this.drawings = [];
+    /** What they are: "emulated", or a "recording". */
+    this.source = "";
     this.mostTiles = 0;
     this.mostPlace = 0;
     this.stepS = 0.02;
     this.time = 0;
     this.pace = { speed: 1, paused: false, share: 1 };
+    /** The time that one can go to at most; null: one cannot go back here. @type {number | null} */
+    this.end = null;
+    /** What hands have done in this run, and will do. @type {import("./deeds.js").Deed[]} */
+    this.deeds = [];
+    /** How often the run was taken to another time. */
+    this.jumps = 0;
     this.seed = 0;
     this.runs = 0;
     this.startTiles = 0;
-    /** @type {Change[]} */
-    this.changes = [];
-    this.changeCount = 0;
-    /** @type {Sample[]} */
-    this.samples = [];
+    this.history = new History();
     /** Frames that have come since the last look. @type {Pulse[]} */
     this.pulses = [];
     /** Ports whose picture is out of date. @type {Set<string>} */
@@ -78,7 +75,7 @@ export class Tiles {
     for (const event of events) {
       const before = this.version;
       this.takeOne(event);
-      if (this.version !== before) this.sample(event.time);
+      if (this.version !== before) this.history.sample({ time: event.time, ...this.count() });
     }
   }
 
@@ -86,6 +83,7 @@ export class Tiles {
   takeOne(event) {
     if (event.stream !== undefined) {
       if (event.stream !== STREAM_VERSION) this.refused = `The server speaks version ${event.stream}: reload the page.`;
+      this.source = event.source ?? "";
       this.looks = event.looks ?? [];
       this.drawings = event.drawings ?? [];
       this.mostTiles = event.most_tiles ?? 0;
@@ -93,9 +91,15 @@ export class Tiles {
       this.stepS = (event.period_ms ?? 20) / 1000;
     } else if (event.run) {
       this.begin(event.run.seed, event.run.tiles);
+    } else if (event.deed) {
+      this.deeds = [...this.deeds.filter(({ time }) => time <= event.time), { time: event.time, deed: event.deed }];
+    } else if (event.jump) {
+      this.jump(event.time);
     } else if (event.pace) {
       this.pace = event.pace;
       this.time = event.time;
+      this.end = event.pace.end ?? null;
+      this.history.pass(event.time, event.pace.end);
     } else if (event.refused !== undefined) {
       this.refused = event.refused;
     } else if (event.port !== undefined) {
@@ -105,17 +109,24 @@ export class Tiles {
 
   /** @param {number} seed @param {number} tiles */
   begin(seed, tiles) {
-    this.byPort.clear();
-    this.byPlace.clear();
-    this.cut.clear();
-    this.changes = [];
-    this.changeCount = 0;
-    this.samples = [];
-    this.pulses = [];
-    this.time = 0;
+    this.jump(0);
+    this.history = new History();
+    this.deeds = [];
+    this.end = null;
     this.seed = seed;
     this.startTiles = tiles;
     this.runs++;
+  }
+
+  /** The run has gone to another time: what follows tells all that is there. @param {number} time */
+  jump(time) {
+    this.byPort.clear();
+    this.byPlace.clear();
+    this.cut.clear();
+    this.pulses = [];
+    this.time = time;
+    this.history.jumpedTo = time;
+    this.jumps++;
     this.version++;
     this.isMoved = true;
   }
@@ -215,22 +226,9 @@ export class Tiles {
   /** @param {Tile} tile @param {number} time @param {string} label */
   show(tile, time, label) {
     if (label === tile.label) return;
-    this.changes.push({ time, port: tile.port, from: tile.label, to: label });
-    if (tile.label !== "" && label !== "") this.changeCount++;
-    if (this.changes.length > MOST_KEPT) this.changes.splice(0, MOST_KEPT / 4);
+    this.history.note({ time, port: tile.port, from: tile.label, to: label });
     tile.label = label;
     this.version++;
-  }
-
-  /** Notes how many tiles show what from a time on, where that has changed. @param {number} time */
-  sample(time) {
-    const { counts, total } = this.count();
-    const last = this.samples.at(-1);
-    const same = last && last.total === total && last.counts.size === counts.size &&
-      [...counts].every(([label, count]) => last.counts.get(label) === count);
-    if (same) return;
-    this.samples.push({ time, counts, total });
-    if (this.samples.length > MOST_KEPT) this.samples.splice(0, MOST_KEPT / 4);
   }
 
   /** The labels of the tiles on the board that have power, and how many show each. */

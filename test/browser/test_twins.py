@@ -94,7 +94,8 @@ def test_an_address_keeps_what_it_says_and_survives_nonsense(page: Page) -> None
           const drawings = [{ name: "digits/1", label: "1", rows: ["#", "#"] }];
           const read = (query) => readAddress(query, drawings);
           const start = read("?draw=101-111&seed=7&speed=0.3&fault=cut@1E&fault=loss=0.1&spread=2&until=1.5"
-            + "&model=D968");
+            + "&model=D968&deed=0.65,pull,4&deed=1,arrange,101-111,-2,3&deed=2,cut,13W,0&deed=3,noise,0.05"
+            + "&deed=4,fly,1&deed=x,pull,1&deed=5");
           const again = read(writeAddress(start, drawings));
           const odd = read("?shape=none&draw=xyz&seed=-1&speed=fast&until=&spread=1e99&fault=");
           const moved = { ...start, cells: [[4, 4], [5, 4]] };
@@ -102,9 +103,15 @@ def test_an_address_keeps_what_it_says_and_survives_nonsense(page: Page) -> None
         }"""
     )
     assert wanted["again"] == wanted["start"]
+    assert [(one["time"], one["deed"]) for one in wanted["start"]["deeds"]] == [
+        (0.65, {"do": "pull", "port": "tile-04"}),
+        (1, {"do": "arrange", "cells": [[-2, 3], [-2, 5], [-1, 3], [-1, 4], [-1, 5]]}),
+        (2, {"do": "cut", "port": "tile-13", "side": "W", "on": False}),
+        (3, {"do": "noise", "loss": 0.05}),
+    ]
     assert wanted["start"]["faults"] == ["cut@1E", "loss=0.1"]
     assert wanted["odd"] == {
         "cells": [[0, 0], [1, 0]], "seed": 0, "speed": 0.1, "faults": [""], "spread": 0.25,
-        "until": None, "model": "",
+        "until": None, "model": "", "deeds": [],
     }  # fmt: skip
     assert wanted["known"].startswith("?shape=digits/1&seed=7")

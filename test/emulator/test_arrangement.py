@@ -181,3 +181,25 @@ def test_the_same_hands_do_the_same_to_the_byte(firmware: Path) -> None:
             return emulation.array.save()
 
     assert snapshot(1) == snapshot(15)
+
+
+def test_a_moment_brings_back_the_board_with_its_cables_and_faults(firmware: Path) -> None:
+    faults = (parse_fault("cut@1-2:0.3"), parse_fault("loss=0.2:0.1"))
+    with arranged(firmware, ROW_OF_THREE, faults=faults) as (emulation, board):
+        emulation.pass_time(0.2)
+        moment = board.save()
+        emulation.pass_time(0.4)
+        after = emulation.array.save()
+        board.pull(1)
+        board.put((5, 5))
+        board.put((0, 1))
+        board.lose(0.9)
+        emulation.pass_time(0.1)
+        board.restore(moment)
+        assert board.places == {0: (0, 0), 1: (0, 1), 2: (0, 2)}
+        assert (len(emulation.array), board.cut) == (3, set())
+        board.traffic.read()
+        emulation.pass_time(0.4)
+        assert emulation.array.save() == after
+        assert board.cut == {(0, EAST, 1, WEST)}
+        assert {(frame.tile, frame.side) for frame in board.traffic.read()} >= {(1, EAST), (2, WEST)}

@@ -13,7 +13,8 @@ from tilenca import cli
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import DEFAULT_SHAPES
 from tilenca.emulator.greeting import firmware_settings
-from tilenca.page.emulated import Drawing, EmulatedSource
+from tilenca.page.emulated import EmulatedSource
+from tilenca.page.offer import Drawing
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.sentences import TileSentence, parse_sentence
 from tilenca.protocol.stream import KINDS, StreamEvent
@@ -222,3 +223,90 @@ def test_whatever_hands_do_the_page_knows_what_lies_where(
         if other in ((row + 1, col), (row, col + 1))
     }
     assert joined == beside
+
+
+def said(source: EmulatedSource, steps: int) -> list[StreamEvent]:
+    """What tiles say, and where they lie, in so many twentieths of a second."""
+    events = []
+    for _ in range(steps):
+        source.take(commands.Step(0.05))
+        events += [event for event in source.advance(0.0) if "raw" in event or "place" in event]
+    return events
+
+
+def test_time_goes_back_and_the_same_future_comes(source: EmulatedSource) -> None:
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True, faults=("loss=0.1", "cut@1-3:0.2-0.5")))
+    first = said(source, 5)
+    source.take(commands.Pull("tile-04"))
+    source.take(commands.Put(9, 9))
+    then = source.advance(0.0) + said(source, 8)
+    source.take(commands.Seek(0.1))
+    jump, *state = source.advance(0.0)
+    assert (jump["time"], jump["jump"]) == (pytest.approx(0.1, abs=2e-5), {"from": pytest.approx(0.65)})
+    assert [event["place"] for event in of(state, "place")] == [list(cell) for cell in FOUR]
+    assert of(state, "pace")[-1]["pace"] | {"end": 0} == {
+        "speed": 1.0, "paused": True, "share": 1.0, "end": 0,
+    }  # fmt: skip
+    again = said(source, 11)
+    raws = [event for event in first + then if "raw" in event and event["time"] > jump["time"]]
+    assert of(again, "raw") == raws
+    assert [(event["port"], event["place"]) for event in of(again, "place")] == [("tile-04", [9, 9])]
+
+
+def test_another_deed_in_the_past_begins_another_future(source: EmulatedSource) -> None:
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True))
+    said(source, 6)
+    source.take(commands.Pull("tile-04"))
+    said(source, 2)
+    source.take(commands.Seek(0.2))
+    source.take(commands.Pull("tile-10"))
+    assert of(source.advance(0.0), "pace")[-1]["pace"]["end"] == pytest.approx(0.2, abs=2e-5)
+    assert {event["port"] for event in said(source, 6) if "place" in event} == set()
+    source.take(commands.Seek(99.0))
+    events = source.advance(0.0)
+    assert events[0]["time"] == pytest.approx(0.5, abs=1e-4)
+    assert "tile-04" in {event["port"] for event in of(events, "place")}
+    assert "tile-10" not in {event["port"] for event in of(events, "place")}
+
+
+def test_there_is_no_past_before_a_run(source: EmulatedSource) -> None:
+    with pytest.raises(UsageError, match="nothing runs yet"):
+        source.take(commands.Seek(0.0))
+
+
+def test_a_run_with_deeds_is_the_run_that_hands_made(source: EmulatedSource) -> None:
+    start = commands.Open(FOUR, spread_s=0.1, paused=True, seed=5)
+    source.take(start)
+    first = said(source, 4)
+    hands: tuple[commands.Hand, ...] = (
+        commands.Pull("tile-04"),
+        commands.Freeze("tile-02"),
+        commands.Noise(0.1),
+    )
+    for hand in hands:
+        source.take(hand)
+        first += said(source, 3)
+    source.take(commands.Seek(0.0))
+    deeds = tuple((time_s, hand) for time_s, hand in zip((0.2, 0.35, 0.5), hands, strict=True))
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True, seed=5, deeds=deeds))
+    told = of(source.advance(0.0), "deed")
+    assert [event["deed"]["do"] for event in told] == ["pull", "freeze", "noise"]
+    again = said(source, 13)
+    assert of(again, "raw") == of(first, "raw")
+    source.take(commands.Seek(0.3))
+    source.take(commands.Reset("tile-01"))
+    assert [event["deed"] for event in of(source.advance(0.0), "deed")] == [
+        {"do": "reset", "port": "tile-01"}
+    ]
+    source.take(commands.Step(1.0))
+    frozen = [event for event in of(source.advance(0.0), "raw") if "$ACK,2" in event["raw"]]
+    assert frozen == []  # that would have been in the future that was left
+
+
+def test_deeds_at_the_beginning_come_before_all(source: EmulatedSource) -> None:
+    cells = [list(cell) for cell in FOUR[:2]]
+    deeds = ((0.0, commands.Arrange(FOUR[:2])), (0.0, commands.Pull("tile-01")))
+    source.take(commands.Open(FOUR, paused=True, deeds=deeds))
+    events = source.advance(0.0)
+    assert of(events, "deed")[0]["deed"] == {"do": "arrange", "cells": cells}
+    assert [event["port"] for event in of(events, "place")] == ["tile-02"]

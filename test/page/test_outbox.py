@@ -31,11 +31,12 @@ def test_of_what_waits_the_latest_counts() -> None:
     for updates in range(1000):
         outbox.put([tile(port, updates) for port in PORTS])
         outbox.put([link("tile-01", "NESW"[updates % 4], updates)])
-        outbox.put([stream.pace_event(updates, 1, False, 1)])
+        outbox.put([stream.pace_event(updates, 1, False, 1, 0)])
     _, events = outbox.take()
     assert events == [
         link("tile-01", "N", 996), link("tile-01", "E", 997), link("tile-01", "S", 998),
-        *(tile(port, 999) for port in PORTS), link("tile-01", "W", 999), stream.pace_event(999, 1, False, 1),
+        *(tile(port, 999) for port in PORTS), link("tile-01", "W", 999),
+        stream.pace_event(999, 1, False, 1, 0),
     ]  # fmt: skip
 
 
@@ -47,6 +48,16 @@ def test_of_lines_that_are_no_sentence_the_latest_of_each_tile_waits() -> None:
             [stream.raw_event(n, "tile-01", line) for line in (b"debug %d, x" % n, b"$LINK,1,2,%d,*00" % n)]
         )
     assert outbox.take()[1] == [tile("tile-01", 7), stream.raw_event(999, "tile-01", b"$LINK,1,2,999,*00")]
+
+
+def test_a_jump_makes_all_but_the_run_void() -> None:
+    outbox = Outbox()
+    run, jump = stream.run_event(0, {"seed": 1}), stream.jump_event(2, 5)
+    outbox.put([stream.stream_event("emulated"), run, tile("tile-01", 7), stream.refused_event(0, "no")])
+    outbox.put([stream.jump_event(1, 5), tile("tile-02", 8), jump, tile("tile-03", 9)])
+    assert outbox.take()[1] == [
+        stream.stream_event("emulated"), run, stream.refused_event(0, "no"), jump, tile("tile-03", 9)
+    ]  # fmt: skip
 
 
 def test_frames_and_refusals_have_an_end() -> None:

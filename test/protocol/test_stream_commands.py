@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca.protocol import stream_commands as commands
-from tilenca.protocol.stream_commands import KINDS, MAX_TEXT, MOST_TILES, parse_command
+from tilenca.protocol.stream_commands import KINDS, MAX_TEXT, parse_command
+from tilenca.protocol.stream_fields import MOST_TILES
 
 GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "open", "cells": [[0, 0], [0, 1]]}, commands.Open(((0, 0), (0, 1)))),
@@ -18,6 +19,15 @@ GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "pace", "speed": 0, "paused": True}, commands.Pace(0.0, True)),
     ({"do": "rest", "on": True}, commands.Rest(True)),
     ({"do": "step", "seconds": 0.02}, commands.Step(0.02)),
+    ({"do": "seek", "seconds": 0}, commands.Seek(0.0)),
+    (
+        {
+            "do": "open",
+            "cells": [[0, 0]],
+            "deeds": [[2, {"do": "pull", "port": "a"}], [1, {"do": "reset", "port": "b"}]],
+        },
+        commands.Open(((0, 0),), deeds=((1.0, commands.Reset("b")), (2.0, commands.Pull("a")))),
+    ),
     ({"do": "put", "row": -3, "col": 64}, commands.Put(-3, 64)),
     ({"do": "pull", "port": "tile-03"}, commands.Pull("tile-03")),
     ({"do": "move", "port": "tile-03", "row": 1, "col": 1}, commands.Move("tile-03", 1, 1)),

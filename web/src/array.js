@@ -1,5 +1,6 @@
 // Many emulated tiles on one clock.
 import { forEach, indexBelow, seedOf, whole } from "./checks.js";
+import { HARDWARE, writeHardware } from "./hardware.js";
 import { TilencaError } from "./module.js";
 import { Tile } from "./tile.js";
 
@@ -27,6 +28,8 @@ const USUAL_DELAY_S = 260e-6;
  * @property {ArrayLike<number>} [ppm] each tile's clock error in parts per million; default: none
  * @property {ArrayLike<number>} [switchOnS] when each is switched on, in seconds; default: 0
  * @property {number} [cableDelayS] what a cable takes, 20e-6 to 260e-6; short ones cost time
+ * @property {import("./hardware.js").Hardware} [hardware] how far the boards differ from ideal ones; default: as those
+ *   of `tilenca.emulator`
  * @property {boolean} [translated] whether to use the module's blocks if they are this image's; it changes nothing
  *   else
  */
@@ -57,6 +60,7 @@ export class TileArray {
     const switchOnS = forEach("switch-on times", options.switchOnS, Math.max(0, tiles), 0);
     this.#handle = this.#made(options, ppm, switchOnS);
     try {
+      this.#setHardware(options.hardware ?? {}, options.bootloader !== undefined);
       this.#call("set_cable_delay", options.cableDelayS ?? USUAL_DELAY_S);
       this.isTranslated = (options.translated ?? true) && this.#useBlocks();
       for (const link of options.links ?? []) {
@@ -94,6 +98,17 @@ export class TileArray {
         this.module.dropFile(file.name);
       }
     }
+  }
+
+  /**
+   * @param {import("./hardware.js").Hardware} hardware
+   * @param {boolean} hasBootloader
+   */
+  #setHardware(hardware, hasBootloader) {
+    this.module.begin(HARDWARE.bytes);
+    const address = this.module.take(HARDWARE.bytes);
+    writeHardware(this.module.bytes(address, HARDWARE.bytes), hardware, hasBootloader);
+    this.#call("set_hardware", address);
   }
 
   #useBlocks() {

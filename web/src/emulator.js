@@ -1,10 +1,13 @@
 // The emulator: tiles of ATmega2560s that run a firmware image cycle by cycle.
 import { TileArray } from "./array.js";
+import { HARDWARE } from "./hardware.js";
 import { Module } from "./module.js";
 
 const ABI_VERSION = 2; // TILENCA_EMULATOR_ABI_VERSION
 // As array.js and tile.js write and read them, in bytes.
-const STRUCTURES = { tilenca_wire_fault: 32, tilenca_wire_counts: 24, tilenca_cycles: 24 };
+const STRUCTURES = {
+  tilenca_wire_fault: 32, tilenca_wire_counts: 24, tilenca_cycles: 24, tilenca_hardware: HARDWARE.bytes,
+};
 
 /** An instance of the emulator; its arrays share one memory. */
 export class Emulator {

@@ -39,7 +39,7 @@ test("every function of the C headers is there", async () => {
 
 test("what a page with emulated tiles loads is small", async () => {
   let [bytes, gzipped] = [0, 0];
-  const files = await readdir(bundle.address);
+  const files = (await readdir(bundle.address, { withFileTypes: true })).filter((one) => one.isFile()).map(({ name }) => name);
   for (const name of files.filter((file) => file !== "tilenca_simulator.wasm" && file !== "digits.json")) {
     const content = await bytesOf(name);
     bytes += content.length;

@@ -15,12 +15,10 @@ from tilenca.base.shipped import shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import existing_image
 from tilenca.emulator.greeting import firmware_settings
-from tilenca.shapes.file import load_task
+from tilenca.page.offer import DEFAULT_SHAPES, load_offer
 
 DEFAULT_PORT = 8137
 DEFAULT_HOST = "127.0.0.1"
-# The digits at all the sizes that are drawn by hand.
-DEFAULT_SHAPES = ("digits", "digits-3x3", "digits-7x6")
 NEEDED = ("starlette", "uvicorn", "wsproto")
 
 
@@ -61,17 +59,14 @@ def address(text: str) -> tuple[str, int]:
 def run(args: argparse.Namespace) -> int:
     """Serves the page until Ctrl-C."""
     try:
-        from tilenca.page.emulated import Drawing, EmulatedSource
+        from tilenca.page.emulated import EmulatedSource
         from tilenca.page.guard import Guard, is_loopback, new_token
         from tilenca.page.server import make_app, serve
     except ModuleNotFoundError as error:
         if error.name not in NEEDED:
             raise
         raise UsageError(f"the page needs {error.name}; run: {install_remedy('page')}") from error
-    files = args.shapes or [shapes_file(name) for name in DEFAULT_SHAPES]
-    tasks = [load_task(path) for path in files]
-    drawings = [Drawing(f"{task.path.stem}/{shape.name}", shape) for task in tasks for shape in task.shapes]
-    labels = tuple(dict.fromkeys(label for task in tasks for label in task.labels))
+    offer = load_offer(args.shapes or ())
     image = args.elf or firmware_image()
     existing_image(image, f"{build_remedy()}, or give --elf")
     defaults = firmware_settings(image)
@@ -84,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
             url += f"#token={guard.token}"
 
         def make_source() -> EmulatedSource:
-            return EmulatedSource(image, defaults, labels, drawings)
+            return EmulatedSource(image, defaults, offer.labels, offer.drawings)
 
         def tell() -> None:
             print(url, flush=True)

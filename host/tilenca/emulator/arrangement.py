@@ -2,12 +2,14 @@
 
 import random
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, OFFSETS, SIDES, SOUTH, opposite
 from tilenca.emulator.array import Link
 from tilenca.emulator.experiment import Emulation
+from tilenca.emulator.faults import FaultsMoment
 from tilenca.emulator.traffic import Traffic
 from tilenca.protocol.commands import set_command
 from tilenca.protocol.settings import settings_block
@@ -17,6 +19,25 @@ Place: TypeAlias = tuple[int, int]
 # A tile stops at its number of updates: at once, where it has done more.
 STOPPED_UPDATES = 1
 FOR_EVER = 0
+
+
+@dataclass(frozen=True)
+class BoardMoment:
+    """A board at a moment: all that decides about its future.
+
+    Attributes:
+        time_s: emulated seconds since the run began.
+        snapshot: of the array.
+        places: of the tiles on the board, by their index.
+        cables: between them.
+        faults: that stand, and that will fall due.
+    """
+
+    time_s: float
+    snapshot: bytes
+    places: dict[int, Place]
+    cables: list[Link]
+    faults: FaultsMoment
 
 
 class Arrangement:
@@ -127,6 +148,27 @@ class Arrangement:
     def lose(self, share: float) -> None:
         """From now on so many of the bytes on all cables are lost, 0..1."""
         self._emulation.faults.spoil_all("loss", share)
+
+    # --- moments ---
+
+    def save(self) -> BoardMoment:
+        """The board as it is now."""
+        emulation = self._emulation
+        return BoardMoment(
+            self._array.time_s,
+            self._array.save(),
+            dict(self.places),
+            list(emulation.cables),
+            emulation.faults.save(),
+        )
+
+    def restore(self, moment: BoardMoment) -> None:
+        """Goes to a moment of this board; from there the same happens as did then."""
+        self._array.restore(moment.snapshot)
+        self.places = dict(moment.places)
+        self._emulation.cables[:] = moment.cables  # the faults know this list, too
+        self._emulation.faults.restore(moment.faults)
+        self.traffic.restart(moment.cables)
 
     # --- how ---
 

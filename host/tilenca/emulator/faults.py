@@ -103,6 +103,17 @@ def parse(text: str) -> FaultSpec:
     return FaultSpec(text, kind, value, where or "", from_s, to_s)
 
 
+@dataclass(frozen=True)
+class FaultsMoment:
+    """The faults of an array at a moment: those that stand, and those that will fall due."""
+
+    restarted_s: dict[int, float]
+    cut: set[End]
+    everywhere: dict[str, float]
+    due: list[tuple[float, int, Callable[[], None]]]
+    spoilt: dict[End, dict[str, float]]
+
+
 @dataclass
 class Faults:
     """The faults of one array: injects each at its time.
@@ -121,6 +132,19 @@ class Faults:
     everywhere: dict[str, float] = field(default_factory=dict)
     _due: list[tuple[float, int, Callable[[], None]]] = field(default_factory=list)
     _spoilt: dict[End, dict[str, float]] = field(default_factory=dict)
+
+    def save(self) -> FaultsMoment:
+        """A copy of all that is planned and stands."""
+        spoilt = {end: dict(kinds) for end, kinds in self._spoilt.items()}
+        return FaultsMoment(
+            dict(self.restarted_s), set(self.cut), dict(self.everywhere), list(self._due), spoilt
+        )
+
+    def restore(self, moment: FaultsMoment) -> None:
+        """Knows again what a copy says; the array's own snapshot has the faults themselves."""
+        self.restarted_s, self.cut = dict(moment.restarted_s), set(moment.cut)
+        self.everywhere, self._due = dict(moment.everywhere), list(moment.due)
+        self._spoilt = {end: dict(kinds) for end, kinds in moment.spoilt.items()}
 
     def add(self, spec: FaultSpec) -> None:
         """Plans a fault.

@@ -1,8 +1,10 @@
 """The frames on the cables of an array, while cables come and go."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 
+from tilenca.base.errors import UsageError
 from tilenca.base.sides import SOUTH
 from tilenca.emulator.array import Array, Link
 from tilenca.emulator.probe import WireTap
@@ -31,6 +33,7 @@ class Traffic:
     def __init__(self, array: Array, cables: Iterable[Link] = ()) -> None:
         self._array = array
         self._taps: dict[tuple[int, int], WireTap] = {}
+        self._midway: set[tuple[int, int]] = set()
         for cable in cables:
             self.watch(cable)
 
@@ -46,14 +49,27 @@ class Traffic:
     def forget(self, cable: Link) -> None:
         """Listens no more at a cable."""
         for end in (cable[:2], cable[2:]):
+            self._midway.discard(end)
             if tap := self._taps.pop(end, None):
                 tap.close()
 
+    def restart(self, cables: Iterable[Link]) -> None:
+        """The array has gone to another moment, with these cables; a frame may be on its way there."""
+        for tap in self._taps.values():
+            with suppress(UsageError):  # its tile is no more
+                tap.close()
+        self._taps = {}
+        for cable in cables:
+            self.watch(cable)
+        self._midway = set(self._taps)
+
     def read(self) -> list[CableFrame]:
         """The frames that have ended since the last call, in order of their ends."""
-        seen = [
-            CableFrame(frame.time_s, tile, side, frame.data)
-            for (tile, side), tap in self._taps.items()
-            for frame in tap.read_frames()
-        ]
+        seen = []
+        for end, tap in self._taps.items():
+            frames = tap.read_frames()
+            if frames and end in self._midway:
+                self._midway.discard(end)
+                del frames[0]  # its beginning is missing
+            seen += [CableFrame(frame.time_s, *end, frame.data) for frame in frames]
         return sorted(seen, key=lambda frame: (frame.time_s, frame.tile, frame.side))

@@ -7,52 +7,33 @@ from pathlib import Path
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.sides import SIDES
-from tilenca.emulator.arrangement import Arrangement, Place
-from tilenca.emulator.array import Link
+from tilenca.emulator.arrangement import Arrangement, BoardMoment, Place
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.faults import parse as parse_fault
-from tilenca.emulator.telemetry import heard_from
+from tilenca.emulator.history import QUANTUM_S
 from tilenca.emulator.types import port_name
+from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
+from tilenca.page.teller import Said, Teller
+from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
-from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.settings import Settings
-from tilenca.protocol.stream import (
-    StreamEvent,
-    cable_event,
-    display_event,
-    frame_event,
-    open_event,
-    pace_event,
-    place_event,
-    raw_event,
-    run_event,
-    stream_event,
-)
+from tilenca.protocol.stream import StreamEvent, deed_event, jump_event, pace_event, run_event, stream_event
+from tilenca.protocol.stream_fields import MAX_PLACE, MOST_TILES
 from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
 from tilenca.shapes.glyphs import looks_of
 
 # Up to this speed there is time to look at single frames on the cables.
 FRAMES_SPEED = 0.3
-NO_POWER = "no power"
 
 
 @dataclass(frozen=True)
-class Drawing:
-    """A shape that the page offers; `name` is unique among them, such as `digits-3x3/4`."""
+class _Moment:
+    """A board, and what its tiles have said until then."""
 
-    name: str
-    shape: Shape
-
-
-@dataclass
-class _Seen:
-    """What the page has been told of one tile."""
-
-    place: Place | None = None
-    powered: bool | None = None
-    display: tuple[int, tuple[int, ...], str] | None = None
+    board: BoardMoment
+    said: Said
 
 
 class EmulatedSource:
@@ -91,8 +72,8 @@ class EmulatedSource:
                     for one in self._drawings
                 ],
                 period_ms=self._defaults.period_ms if self._defaults else None,
-                most_tiles=commands.MOST_TILES,
-                most_place=commands.MAX_PLACE,
+                most_tiles=MOST_TILES,
+                most_place=MAX_PLACE,
             )
         ]
 
@@ -112,15 +93,26 @@ class EmulatedSource:
                 if self._pace.paused and self._emulation is not None:
                     self._run(seconds)
                     self._pace.set(self._pace.speed, paused=True)
+            case commands.Seek(seconds):
+                self._seek(seconds)
             case commands.Seen():
                 raise UsageError("seen: the server takes it itself")
             case _:
                 self._lay_hands_on(command)
-        self._tell_places()
+        if self._emulation is not None:
+            self._events += self._teller.places()
 
-    def _lay_hands_on(self, command: commands.StreamCommand) -> None:
+    def _lay_hands_on(self, command: commands.Hand) -> None:
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
+        self._do(command)
+        self._timeline.note(self._array.time_s, command)
+        self._keep()
+        self._tell_pace()  # another future begins
+        self._events.append(deed_event(self._array.time_s, commands.told(command)))
+
+    def _do(self, command: commands.Hand) -> None:
+        """What a hand does, now or once more in a past that is run again."""
         board = self._board
         match command:
             case commands.Put(row, col):
@@ -144,8 +136,8 @@ class EmulatedSource:
                 board.lose(loss)
 
     def _check_room(self, more: int) -> None:
-        if len(self._board.places) + more > commands.MOST_TILES:
-            raise UsageError(f"the board has {commands.MOST_TILES} tiles, which is all; take one out first")
+        if len(self._board.places) + more > MOST_TILES:
+            raise UsageError(f"the board has {MOST_TILES} tiles, which is all; take one out first")
 
     def _tile(self, port: str) -> int:
         """The tile of that port, which lies on the board."""
@@ -155,6 +147,7 @@ class EmulatedSource:
         raise UsageError(f"no tile {port} lies on the board")
 
     def _open(self, wanted: commands.Open) -> None:
+        deeds = [(round(time_s / QUANTUM_S) * QUANTUM_S, deed) for time_s, deed in wanted.deeds]
         faults = tuple(parse_fault(text) for text in wanted.faults)
         cells = sorted(wanted.cells)
         settings = EmulationSettings(boot_spread_s=wanted.spread_s, seed=wanted.seed, faults=faults)
@@ -164,12 +157,15 @@ class EmulatedSource:
         self._emulation = emulation
         self._array = emulation.array
         self._board = Arrangement(emulation, cells)
-        self._readers: list[LineReader] = []
-        self._seen: list[_Seen] = []
-        self._seen_cut: set[Link] = set()
+        self._teller = Teller(self._array, self._board)
+        self._timeline: Timeline[_Moment, commands.Hand] = Timeline(deeds)
         self._pace = Pace(wanted.speed, wanted.paused, wanted.until_s)
         self._events = [run_event(0.0, {"seed": wanted.seed, "shape": shape.name, "tiles": len(cells)})]
+        self._events += [deed_event(time_s, commands.told(deed)) for time_s, deed in deeds]
+        for _, deed in self._timeline.deeds_in(-QUANTUM_S, 0.0):
+            self._do(deed)
         self._look()
+        self._keep()
 
     def _shape(self, cells: Sequence[Place]) -> Shape:
         """The drawing with these cells: one of those offered, or an own one."""
@@ -194,10 +190,9 @@ class EmulatedSource:
     def _run(self, seconds: float) -> None:
         if seconds <= 0:
             return
-        assert self._emulation is not None
         started, before_s = time.perf_counter(), self._array.time_s
         try:
-            self._emulation.pass_time(seconds)
+            self._pass_time(seconds)
         except TilencaError:
             self._pace.paused = True
             self._look()
@@ -205,58 +200,49 @@ class EmulatedSource:
         took_s = time.perf_counter() - started
         self._pace.ran(self._array.time_s - before_s, took_s, self._array.time_s)
         self._look()
+        if self._timeline.is_due(self._array.time_s):
+            self._keep()
+
+    def _pass_time(self, seconds: float) -> None:
+        """Runs on; in a past that is known, hands do what they did."""
+        assert self._emulation is not None
+        end_s = self._array.time_s + seconds
+        for time_s, deed in self._timeline.deeds_in(self._array.time_s, end_s):
+            self._emulation.pass_time(max(time_s - self._array.time_s, 0.0))
+            self._do(deed)
+        if end_s > self._array.time_s:
+            self._emulation.pass_time(end_s - self._array.time_s)
+        self._timeline.reached(self._array.time_s)
+
+    def _keep(self) -> None:
+        moment = self._board.save()
+        self._timeline.keep(moment.time_s, _Moment(moment, self._teller.save()), len(moment.snapshot))
+
+    def _seek(self, time_s: float) -> None:
+        """Goes to a time that the run has been at; all that hands did until then is done."""
+        if self._emulation is None:
+            raise UsageError("nothing runs yet; open a drawing first")
+        from_s, time_s = self._array.time_s, min(time_s, self._timeline.end_s)
+        at_s, moment = self._timeline.nearest(time_s)
+        if not at_s <= from_s <= time_s:  # or it is nearer to run on
+            self._board.restore(moment.board)
+            self._teller.restore(moment.said)
+        self._pace.set(self._pace.speed, paused=True)
+        self._pass_time(time_s - self._array.time_s)
+        self._events = [event for event in self._events if "run" in event or "refused" in event]
+        self._events += [jump_event(self._array.time_s, from_s), *self._teller.all()]
+        self._tell_pace()
 
     # --- what the page is told ---
 
     def _look(self) -> None:
-        now_s = self._array.time_s
-        self._tell_places()
-        frames = self._board.traffic.read()
-        if 0 < self._pace.speed <= FRAMES_SPEED:
-            self._events += [
-                frame_event(frame.time_s, port_name(frame.tile), SIDES[frame.side], frame.data)
-                for frame in frames
-            ]
-        heard = [
-            line
-            for tile, reader in zip(self._array, self._readers, strict=True)
-            for line in heard_from(tile, reader)
-        ]
-        heard.sort(key=lambda line: (line.time_s, line.port))
-        self._events += [raw_event(line.time_s, line.port, line.raw) for line in heard]
-        for tile, seen in zip(self._array, self._seen, strict=True):
-            leds = "".join(name if lit else "-" for name, lit in zip(SIDES, tile.leds, strict=True))
-            display = tile.segments, tile.rgb, leds
-            if display != seen.display:
-                seen.display = display
-                self._events.append(display_event(now_s, port_name(tile.index), *display))
+        self._events += self._teller.look(frames=0 < self._pace.speed <= FRAMES_SPEED)
         self._tell_pace()
-
-    def _tell_places(self) -> None:
-        """What lies where, has power, and is joined, as far as it is news."""
-        if self._emulation is None:
-            return
-        now_s = self._array.time_s
-        while len(self._seen) < len(self._array):
-            self._seen.append(_Seen())
-            self._readers.append(LineReader())
-        for tile, seen in zip(self._array, self._seen, strict=True):
-            port, place = port_name(tile.index), self._board.places.get(tile.index)
-            if place != seen.place:
-                seen.place = place
-                self._events.append(place_event(now_s, port, place))
-            if place is not None and tile.powered != seen.powered:
-                seen.powered = tile.powered
-                self._events.append(open_event(now_s, port, tile.powered, "" if tile.powered else NO_POWER))
-        cut = self._board.cut
-        for link in sorted(cut ^ self._seen_cut):
-            self._events.append(cable_event(now_s, port_name(link[0]), SIDES[link[1]], link not in cut))
-        self._seen_cut = cut
 
     def _tell_pace(self) -> None:
         if self._emulation is not None:
-            pace = self._pace
-            self._events.append(pace_event(self._array.time_s, pace.speed, pace.paused, pace.share))
+            pace, now_s = self._pace, self._array.time_s
+            self._events.append(pace_event(now_s, pace.speed, pace.paused, pace.share, self._timeline.end_s))
 
     def close(self) -> None:
         """Frees the tiles."""

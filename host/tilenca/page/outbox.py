@@ -8,6 +8,7 @@ from tilenca.protocol.stream import StreamEvent
 # Frames and refusals that wait; older ones give way.
 MOST_FRAMES = 256
 MOST_REFUSALS = 8
+MOST_DEEDS = 256
 # Batches that may be on their way, unseen.
 MOST_UNSEEN = 3
 
@@ -17,28 +18,28 @@ class Outbox:
 
     def __init__(self) -> None:
         self._waiting: dict[tuple[object, ...], StreamEvent] = {}
-        self._counters: dict[str, int] = {"frame": 0, "refused": 0}
+        self._counters: dict[str, int] = {"frame": 0, "refused": 0, "deed": 0}
         self._sent = self._seen = 0
 
     def put(self, events: Iterable[StreamEvent]) -> None:
         """Adds events, in their order; a newer one replaces the older one of the same thing."""
         for event in events:
-            if "run" in event:  # all before it is void
-                kept = {key: old for key, old in self._waiting.items() if key[0] in ("stream", "refused")}
-                self._waiting = kept
+            if "run" in event or "jump" in event:  # all before it is void
+                stays = ("stream", "refused") if "run" in event else ("stream", "refused", "run", "deed")
+                self._waiting = {key: old for key, old in self._waiting.items() if key[0] in stays}
             key = self._key(event)
             self._waiting.pop(key, None)
             self._waiting[key] = event
 
     def _key(self, event: StreamEvent) -> tuple[object, ...]:
         port = event.get("port")
-        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS)):
+        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS), ("deed", MOST_DEEDS)):
             if kind in event:
                 self._counters[kind] += 1
                 return kind, self._counters[kind] % most
         if "raw" in event:
-            return "raw", port, *_subject(str(event["raw"]))
-        for kind in ("stream", "run", "pace"):
+            return "raw", port, *subject_of(str(event["raw"]))
+        for kind in ("stream", "run", "jump", "pace"):
             if kind in event:
                 return (kind,)
         return (
@@ -70,7 +71,7 @@ class Outbox:
             self._seen = batch
 
 
-def _subject(raw: str) -> tuple[str, str]:
+def subject_of(raw: str) -> tuple[str, str]:
     """The name of a sentence, and the side of a `$LINK`; one subject for all lines that are no sentence."""
     sentence = parse_sentence(raw)
     if isinstance(sentence, LinkSentence):

@@ -13,7 +13,20 @@ RAW_ENCODING = "latin-1"
 StreamEvent: TypeAlias = dict[str, Any]
 
 # What an event is about; each has exactly one of these keys.
-KINDS = ("stream", "run", "pace", "place", "cable", "raw", "open", "display", "frame", "refused")
+KINDS = (
+    "stream",
+    "run",
+    "jump",
+    "pace",
+    "place",
+    "cable",
+    "raw",
+    "open",
+    "deed",
+    "display",
+    "frame",
+    "refused",
+)
 
 
 def _event(time_s: float, **about: object) -> StreamEvent:
@@ -30,9 +43,18 @@ def run_event(time_s: float, about: Mapping[str, object]) -> StreamEvent:
     return _event(time_s, run=dict(about))
 
 
-def pace_event(time_s: float, speed: float, paused: bool, share: float) -> StreamEvent:
-    """How time passes: `speed` times real time (0: as fast as it can), of which `share` (0..1) is reached."""
-    return _event(time_s, pace={"speed": speed, "paused": paused, "share": round(share, 3)})
+def jump_event(time_s: float, from_s: float) -> StreamEvent:
+    """The run has gone to another of its moments: what was known of tiles is void, and told anew."""
+    return _event(time_s, jump={"from": round(from_s, 6)})
+
+
+def pace_event(time_s: float, speed: float, paused: bool, share: float, end_s: float) -> StreamEvent:
+    """How time passes: `speed` times real time (0: as fast as it can), of which `share` (0..1) is reached.
+
+    One can go to every time up to `end_s`.
+    """
+    pace = {"speed": speed, "paused": paused, "share": round(share, 3), "end": round(end_s, 6)}
+    return _event(time_s, pace=pace)
 
 
 def place_event(time_s: float, port: str, place: tuple[int, int] | None) -> StreamEvent:
@@ -43,6 +65,11 @@ def place_event(time_s: float, port: str, place: tuple[int, int] | None) -> Stre
 def cable_event(time_s: float, port: str, side: str, whole: bool) -> StreamEvent:
     """The cable at a side is cut, or whole again; of the tile that is west or north of it."""
     return _event(time_s, port=port, side=side, cable="whole" if whole else "cut")
+
+
+def deed_event(time_s: float, command: Mapping[str, object]) -> StreamEvent:
+    """A hand does this at that time; all that it would have done later is void."""
+    return _event(time_s, deed=dict(command))
 
 
 def raw_event(time_s: float, port: str, raw: bytes) -> StreamEvent:

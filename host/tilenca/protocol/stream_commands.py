@@ -1,89 +1,34 @@
 """The commands of a page to what runs the tiles (docs/PROTOCOL.md section 7): checked and bounded."""
 
 import json
-from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, TypeAlias
 
-from tilenca.base.sides import SIDES
+from tilenca.protocol import stream_fields as must_be
+from tilenca.protocol.stream_fields import MAX_NAME, Check
 
 MAX_TEXT = 16_384  # characters of a command
-MAX_PLACE = 64  # rows and columns are -MAX_PLACE..MAX_PLACE
-MOST_TILES = 144
 MOST_FAULTS = 32
-MAX_NAME = 64
+MOST_DEEDS = 200
 MAX_SPEED = 1024.0
 MIN_SPEED = 1e-5
 MAX_SECONDS = 86_400.0
 MAX_SEED = 2**53 - 1  # whole numbers of JavaScript
 
-Check: TypeAlias = Callable[[object], Any]
+
+def _deed(value: object) -> "Deed":
+    if not isinstance(value, list) or len(value) != 2 or not isinstance(value[1], dict):
+        raise ValueError("must be deeds, [seconds, command] each")
+    time_s: float = must_be.number(0, MAX_SECONDS)(value[0])
+    command = _read(dict(value[1]))
+    if not isinstance(command, HANDS):
+        raise ValueError(f"must be commands that change something, and {value[1]['do']} does not")
+    return time_s, command
 
 
-def _whole(low: int, high: int) -> Check:
-    def check(value: object) -> int:
-        if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-            raise ValueError(f"must be a whole number in {low}..{high}")
-        return value
-
-    return check
-
-
-def _number(low: float, high: float, or_zero: bool = False) -> Check:
-    def check(value: object) -> float:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not (low <= value <= high or (or_zero and value == 0)):  # type: ignore[operator]
-            raise ValueError(f"must be a number in {low:g}..{high:g}{' or 0' if or_zero else ''}")
-        return float(value)  # type: ignore[arg-type]
-
-    return check
-
-
-def _switch(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise ValueError("must be true or false")
-    return value
-
-
-def _text(value: object) -> str:
-    if not isinstance(value, str) or not 0 < len(value) <= MAX_NAME or not value.isprintable():
-        raise ValueError(f"must be a text of 1 to {MAX_NAME} characters")
-    return value
-
-
-def _side(value: object) -> str:
-    if not isinstance(value, str) or len(value) != 1 or value not in SIDES:
-        raise ValueError(f"must be one of {', '.join(SIDES)}")
-    return value
-
-
-def _list(most: int, check: Check, what: str) -> Check:
-    def check_all(value: object) -> tuple[Any, ...]:
-        if not isinstance(value, list) or len(value) > most:
-            raise ValueError(f"must be a list of at most {most} {what}")
-        return tuple(check(item) for item in value)
-
-    return check_all
-
-
-_place = _whole(-MAX_PLACE, MAX_PLACE)
-
-
-def _cell(value: object) -> tuple[int, int]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise ValueError("must be places, [row, column] each")
-    return _place(value[0]), _place(value[1])
-
-
-def _cells(value: object) -> tuple[tuple[int, int], ...]:
-    cells: tuple[tuple[int, int], ...] = _list(MOST_TILES, _cell, "places")(value)
-    if not cells or len(set(cells)) != len(cells):
-        raise ValueError(f"must be 1 to {MOST_TILES} different places")
-    return cells
-
-
-def _or_none(check: Check) -> Check:
-    return lambda value: None if value is None else check(value)
+def _deeds(value: object) -> tuple["Deed", ...]:
+    deeds = must_be.list_of(MOST_DEEDS, _deed, "deeds")(value)
+    return tuple(sorted(deeds, key=lambda deed: deed[0]))
 
 
 def _checked(check: Check, default: object = MISSING) -> Any:
@@ -104,123 +49,151 @@ class Open:
         speed: see `Pace`.
         paused: whether it begins paused.
         until_s: the time at which it pauses by itself; None: never.
+        deeds: what hands do, and when, in order of time.
     """
 
-    cells: tuple[tuple[int, int], ...] = _checked(_cells)
-    seed: int = _checked(_whole(0, MAX_SEED), 0)
-    faults: tuple[str, ...] = _checked(_list(MOST_FAULTS, _text, "faults"), ())
-    spread_s: float = _checked(_number(0, 3600), 1.0)
-    speed: float = _checked(_number(MIN_SPEED, MAX_SPEED, or_zero=True), 1.0)
-    paused: bool = _checked(_switch, False)
-    until_s: float | None = _checked(_or_none(_number(0, MAX_SECONDS)), None)
+    cells: tuple[tuple[int, int], ...] = _checked(must_be.cells)
+    seed: int = _checked(must_be.whole(0, MAX_SEED), 0)
+    faults: tuple[str, ...] = _checked(must_be.list_of(MOST_FAULTS, must_be.text, "faults"), ())
+    spread_s: float = _checked(must_be.number(0, 3600), 1.0)
+    speed: float = _checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True), 1.0)
+    paused: bool = _checked(must_be.switch, False)
+    until_s: float | None = _checked(must_be.or_none(must_be.number(0, MAX_SECONDS)), None)
+    deeds: tuple["Deed", ...] = _checked(_deeds, ())
 
 
 @dataclass(frozen=True)
 class Pace:
     """Time passes at `speed` times real time; 0: as fast as it can."""
 
-    speed: float = _checked(_number(MIN_SPEED, MAX_SPEED, or_zero=True))
-    paused: bool = _checked(_switch, False)
+    speed: float = _checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True))
+    paused: bool = _checked(must_be.switch, False)
 
 
 @dataclass(frozen=True)
 class Rest:
     """Nobody looks (or somebody does again): time stands still, whatever the pace."""
 
-    on: bool = _checked(_switch)
+    on: bool = _checked(must_be.switch)
 
 
 @dataclass(frozen=True)
 class Step:
     """Runs so many seconds, while paused."""
 
-    seconds: float = _checked(_number(16e-6, 10))
+    seconds: float = _checked(must_be.number(16e-6, 10))
+
+
+@dataclass(frozen=True)
+class Seek:
+    """Goes to a time that the run has been at, and pauses there."""
+
+    seconds: float = _checked(must_be.number(0, MAX_SECONDS))
 
 
 @dataclass(frozen=True)
 class Put:
     """Plugs a tile in at an empty place; it boots."""
 
-    row: int = _checked(_place)
-    col: int = _checked(_place)
+    row: int = _checked(must_be.place)
+    col: int = _checked(must_be.place)
 
 
 @dataclass(frozen=True)
 class Pull:
     """Takes a tile away."""
 
-    port: str = _checked(_text)
+    port: str = _checked(must_be.text)
 
 
 @dataclass(frozen=True)
 class Move:
     """Takes a tile out and plugs it in at another place, where it boots."""
 
-    port: str = _checked(_text)
-    row: int = _checked(_place)
-    col: int = _checked(_place)
+    port: str = _checked(must_be.text)
+    row: int = _checked(must_be.place)
+    col: int = _checked(must_be.place)
 
 
 @dataclass(frozen=True)
 class Arrange:
     """Makes another drawing of the running tiles: those that lie in both stay and keep their state."""
 
-    cells: tuple[tuple[int, int], ...] = _checked(_cells)
+    cells: tuple[tuple[int, int], ...] = _checked(must_be.cells)
 
 
 @dataclass(frozen=True)
 class Cut:
     """Cuts the cable at a side of a tile, or mends it."""
 
-    port: str = _checked(_text)
-    side: str = _checked(_side)
-    on: bool = _checked(_switch, True)
+    port: str = _checked(must_be.text)
+    side: str = _checked(must_be.side)
+    on: bool = _checked(must_be.switch, True)
 
 
 @dataclass(frozen=True)
 class Power:
     """Takes a tile's power, or gives it back; it keeps its place."""
 
-    port: str = _checked(_text)
-    on: bool = _checked(_switch)
+    port: str = _checked(must_be.text)
+    on: bool = _checked(must_be.switch)
 
 
 @dataclass(frozen=True)
 class Freeze:
     """Stops a tile's updates; it goes on saying its last state. Or lets it update again."""
 
-    port: str = _checked(_text)
-    on: bool = _checked(_switch, True)
+    port: str = _checked(must_be.text)
+    on: bool = _checked(must_be.switch, True)
 
 
 @dataclass(frozen=True)
 class Reset:
     """Resets a tile."""
 
-    port: str = _checked(_text)
+    port: str = _checked(must_be.text)
 
 
 @dataclass(frozen=True)
 class Noise:
     """From now on this share of the bytes on all cables is lost."""
 
-    loss: float = _checked(_number(0, 1))
+    loss: float = _checked(must_be.number(0, 1))
 
 
 @dataclass(frozen=True)
 class Seen:
     """The page has shown this batch: the next one may come."""
 
-    batch: int = _checked(_whole(0, MAX_SEED))
+    batch: int = _checked(must_be.whole(0, MAX_SEED))
 
+
+# Those that change something.
+HANDS = (Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise)
+Hand: TypeAlias = Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise
+Deed: TypeAlias = tuple[float, Hand]
 
 StreamCommand: TypeAlias = (
-    Open | Pace | Rest | Step | Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise | Seen
+    Open
+    | Pace
+    | Rest
+    | Step
+    | Seek
+    | Put
+    | Pull
+    | Move
+    | Arrange
+    | Cut
+    | Power
+    | Freeze
+    | Reset
+    | Noise
+    | Seen
 )
 KINDS: dict[str, type[Any]] = {
     kind.__name__.lower(): kind
     for kind in (
-        Open, Pace, Rest, Step, Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise, Seen,
+        Open, Pace, Rest, Step, Seek, Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise, Seen,
     )
 }  # fmt: skip
 
@@ -245,6 +218,18 @@ def parse_command(text: str) -> StreamCommand:
         raise ValueError(f"not JSON: {error}") from None
     if not isinstance(about, dict):
         raise ValueError("a command is an object")
+    return _read(about)
+
+
+def told(command: Hand) -> dict[str, Any]:
+    """The command as an object again, with all its fields."""
+    values = {one.name: getattr(command, one.name) for one in fields(command)}
+    if isinstance(command, Arrange):
+        values["cells"] = [list(cell) for cell in command.cells]
+    return {"do": type(command).__name__.lower(), **values}
+
+
+def _read(about: dict[str, Any]) -> StreamCommand:
     name = about.pop("do", None)
     if not isinstance(name, str) or name not in KINDS:
         raise ValueError(f'a command has "do", one of: {", ".join(KINDS)}')

@@ -1,0 +1,115 @@
+// The board as a picture: the same look as on the page, drawn at one size.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+import { OFFSETS, SIDES } from "../stream/source.js";
+import { cssColour } from "../stream/led.js";
+import { LAMPS, SEGMENTS } from "./tile.js";
+
+const TILE = 120; // pixels of a tile's place
+const MARGIN = 48;
+const EDGE = 0.07; // of the place, around the tile
+const FOOT = 44;
+const LEAST = 480;
+
+/** @typedef {(name: string) => string} Token a colour of the style sheet */
+
+/**
+ * @param {CanvasRenderingContext2D} pen at the corner of a tile's face of 100 x 100
+ * @param {import("../stream/tiles.js").Tile} tile
+ * @param {Token} token
+ */
+function drawTile(pen, tile, token) {
+  const led = cssColour(tile.rgb);
+  const isDark = tile.rgb.every((part) => part === 0);
+  pen.globalAlpha = tile.powered ? 1 : 0.5;
+  pen.fillStyle = token("--housing");
+  pen.beginPath();
+  pen.roundRect(0, 0, 100, 100, 14);
+  pen.fill();
+  if (!isDark) {
+    const light = pen.createRadialGradient(50, 50, 0, 50, 50, 70);
+    light.addColorStop(0, led.replace(")", " / 46%)"));
+    light.addColorStop(0.62, led.replace(")", " / 14%)"));
+    light.addColorStop(1, led.replace(")", " / 0%)"));
+    pen.fillStyle = light;
+    pen.fill();
+  }
+  pen.lineCap = "round";
+  const lit = isDark ? "" : SEGMENTS.filter((_, bit) => (tile.segments >> bit) & 1).join("");
+  /** @type {[string, number, string][]} */
+  const layers = [
+    [SEGMENTS.join(""), 8.5, "rgb(255 255 255 / 6%)"], [lit, 17, led.replace(")", " / 26%)")], [lit, 8.5, led],
+  ];
+  for (const [path, width, colour] of layers) {
+    pen.lineWidth = width;
+    pen.strokeStyle = colour;
+    pen.stroke(new Path2D(path));
+  }
+  LAMPS.forEach(([x, y], side) => {
+    pen.fillStyle = tile.leds[side] === SIDES[side] ? "#ffd479" : "rgb(255 255 255 / 11%)";
+    pen.beginPath();
+    pen.arc(x, y, 2.6, 0, 7);
+    pen.fill();
+  });
+  pen.globalAlpha = 1;
+}
+
+/**
+ * @param {CanvasRenderingContext2D} pen at the middle of a tile's place
+ * @param {Tiles} tiles @param {import("../stream/tiles.js").Tile} tile @param {Token} token
+ */
+function drawCables(pen, tiles, tile, token) {
+  for (const side of [1, 2]) {
+    if (!tiles.neighbour(tile, side)) continue;
+    const [down, right] = OFFSETS[side];
+    const isCut = tiles.isCut(tile, side);
+    pen.strokeStyle = token(isCut ? "--cut" : "--cable");
+    pen.lineWidth = 2;
+    for (const aside of [-6, 0, 6]) {
+      const [x, y] = [(right * TILE) / 2 + down * aside, (down * TILE) / 2 + right * aside];
+      const half = TILE * EDGE;
+      for (const way of [-1, 1]) {
+        pen.beginPath();
+        pen.moveTo(x + right * way * half, y + down * way * half);
+        pen.lineTo(x + right * way * half * (isCut ? 0.5 : 0), y + down * way * half * (isCut ? 0.5 : 0));
+        pen.stroke();
+      }
+    }
+  }
+}
+
+/**
+ * The tiles and cables with a line of words below, as PNG.
+ * @param {Tiles} tiles @param {string} words
+ * @returns {Promise<Blob>}
+ */
+export function boardPicture(tiles, words) {
+  const style = getComputedStyle(document.documentElement);
+  const token = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
+  const laid = tiles.laid();
+  const [rows, cols] = [0, 1].map((axis) => laid.map((tile) => tile.place[axis]));
+  const [top, left] = [Math.min(...rows), Math.min(...cols)];
+  const canvas = document.createElement("canvas");
+  canvas.width = Math.max(LEAST, (laid.length ? Math.max(...cols) - left + 1 : 0) * TILE + 2 * MARGIN);
+  canvas.height = (laid.length ? Math.max(...rows) - top + 1 : 1) * TILE + 2 * MARGIN + FOOT;
+  const begin = laid.length ? (canvas.width - (Math.max(...cols) - left + 1) * TILE) / 2 : MARGIN;
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  pen.fillStyle = token("--raised");
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  for (const tile of laid) {
+    pen.save();
+    pen.translate(begin + (tile.place[1] - left + 0.5) * TILE, MARGIN + (tile.place[0] - top + 0.5) * TILE);
+    drawCables(pen, tiles, tile, token);
+    pen.translate((EDGE - 0.5) * TILE, (EDGE - 0.5) * TILE);
+    pen.scale((TILE * (1 - 2 * EDGE)) / 100, (TILE * (1 - 2 * EDGE)) / 100);
+    drawTile(pen, tile, token);
+    pen.restore();
+  }
+  pen.fillStyle = token("--ink");
+  pen.font = `600 22px ${token("--font")}`;
+  pen.textAlign = "center";
+  pen.fillText(words, canvas.width / 2, canvas.height - MARGIN, canvas.width - MARGIN);
+  return new Promise((resolve, reject) => {
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser makes no picture"))), "image/png");
+  });
+}

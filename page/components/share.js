@@ -1,0 +1,100 @@
+// What one can take along: the link, a picture of the board, a recording; and a recording to look at.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+/** @import { Recorder } from "../stream/recorder.js" */
+/** @import { StreamEvent } from "../stream/source.js" */
+import { parseRecording } from "../stream/recording.js";
+import { byId, element, icon } from "./dom.js";
+import { boardPicture } from "./picture.js";
+
+const ICON = "M12 15V4M8 8l4-4 4 4M5 12v7h14v-7";
+const JSON_LINES = "application/jsonl";
+
+/**
+ * @typedef {{
+ *   link: () => string,
+ *   words: () => string,
+ *   say: (text: string) => void,
+ *   replay: (events: StreamEvent[]) => void,
+ * }} ShareDeeds
+ */
+
+/** Hands bytes over as a file. @param {Blob} blob @param {string} name */
+function download(blob, name) {
+  const address = URL.createObjectURL(blob);
+  element("a", { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}
+
+export class Share {
+  /** @param {HTMLElement} top @param {Tiles} tiles @param {Recorder} recorder @param {ShareDeeds} deeds */
+  constructor(top, tiles, recorder, deeds) {
+    this.tiles = tiles;
+    this.recorder = recorder;
+    this.deeds = deeds;
+    this.dialog = /** @type {HTMLDialogElement} */ (byId("share"));
+    this.link = element("input", { type: "text", readonly: true, id: "share-link", "aria-label": "Link to this run until now" });
+    this.file = element("input", {
+      type: "file", accept: ".jsonl", id: "share-file", class: "visually-hidden", tabindex: -1, "aria-hidden": "true",
+      onchange: () => this.open(),
+    });
+    /** @param {string} text @param {string} help @param {() => void} act */
+    const row = (text, help, act) => element("div", { class: "row" },
+      element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
+    this.dialog.append(
+      element("header", {}, element("h2", { id: "share-title" }, "Share"),
+        element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
+      element("div", { class: "row" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
+      row("Picture", "The board as it is now, as PNG", () => this.picture()),
+      row("Record", "This run until now, as a file that the page replays", () => this.record()),
+      row("Replay a file…", "Shows a recording instead of running tiles", () => this.file.click()),
+      this.file,
+    );
+    top.prepend(element(
+      "button", { type: "button", class: "compact", title: "Link, picture, recording", onclick: () => this.show() },
+      icon(ICON), element("span", {}, "Share"),
+    ));
+  }
+
+  show() {
+    this.link.value = this.deeds.link();
+    this.dialog.showModal();
+    this.link.select();
+  }
+
+  async copy() {
+    this.link.select();
+    try {
+      await navigator.clipboard.writeText(this.link.value);
+    } catch {
+      document.execCommand("copy"); // pages that came over plain http have no clipboard
+    }
+    this.deeds.say("The link is copied.");
+  }
+
+  /** @param {string} kind the end of its name */
+  nameOf(kind) {
+    return `tilenca-${this.tiles.seed}-${this.tiles.time.toFixed(2)}s.${kind}`;
+  }
+
+  async picture() {
+    download(await boardPicture(this.tiles, this.deeds.words()), this.nameOf("png"));
+  }
+
+  record() {
+    download(new Blob([this.recorder.text()], { type: JSON_LINES }), this.nameOf("jsonl"));
+    if (this.recorder.isFull) this.deeds.say("The recording is too long; it has the beginning only.");
+  }
+
+  async open() {
+    const [file] = this.file.files ?? [];
+    if (!file) return;
+    this.file.value = "";
+    this.dialog.close();
+    try {
+      this.deeds.replay(parseRecording(await file.text()));
+    } catch (error) {
+      this.deeds.say(`${file.name}: ${error instanceof Error ? error.message : error}`);
+    }
+  }
+}

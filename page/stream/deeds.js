@@ -1,0 +1,62 @@
+// What hands did and when, as an address has it: `0.65,pull,4` or `0.7,cut,3W,1`.
+
+/** @import { Command, Place } from "./source.js" */
+import { cellsOf, rowsOf } from "./address.js";
+
+/** @typedef {{time: number, deed: Command}} Deed */
+
+export const MOST_DEEDS = 200;
+
+/** @param {unknown} port "tile-04" */
+const numberOf = (port) => Number(String(port).replace(/^\D*/, ""));
+/** @param {string} text */
+const portOf = (text) => `tile-${text.padStart(2, "0")}`;
+/** @param {unknown} on */
+const digit = (on) => (on ? 1 : 0);
+
+/** @param {Place[]} cells */
+function boardText(cells) {
+  const corner = [0, 1].map((axis) => Math.min(...cells.map((cell) => cell[axis])));
+  return [rowsOf(cells).join("-"), ...corner].join(",");
+}
+
+/** @type {Record<string, {write: (deed: any) => unknown[], read: (words: string[]) => object}>} */
+const KINDS = {
+  put: { write: ({ row, col }) => [row, col], read: ([row, col]) => ({ row: Number(row), col: Number(col) }) },
+  pull: { write: ({ port }) => [numberOf(port)], read: ([tile]) => ({ port: portOf(tile) }) },
+  move: {
+    write: ({ port, row, col }) => [numberOf(port), row, col],
+    read: ([tile, row, col]) => ({ port: portOf(tile), row: Number(row), col: Number(col) }),
+  },
+  arrange: {
+    write: ({ cells }) => [boardText(cells)],
+    read: ([rows, top, left]) => ({
+      cells: cellsOf(rows.split("-")).map(([row, col]) => [row + Number(top), col + Number(left)]),
+    }),
+  },
+  cut: {
+    write: ({ port, side, on }) => [`${numberOf(port)}${side}`, digit(on)],
+    read: ([end, on]) => ({ port: portOf(end.slice(0, -1)), side: end.slice(-1), on: on === "1" }),
+  },
+  power: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
+  freeze: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
+  reset: { write: ({ port }) => [numberOf(port)], read: ([tile]) => ({ port: portOf(tile) }) },
+  noise: { write: ({ loss }) => [loss], read: ([loss]) => ({ loss: Number(loss) }) },
+};
+
+/** @param {Deed} deed */
+export function deedText({ time, deed }) {
+  return [time, deed.do, ...KINDS[deed.do].write(deed)].join(",");
+}
+
+/**
+ * The deed that a part of an address tells of; none where it is nonsense.
+ * @param {string} text
+ * @returns {Deed[]}
+ */
+export function parseDeed(text) {
+  const [time, name, ...words] = text.split(",");
+  const kind = Object.hasOwn(KINDS, name ?? "") ? KINDS[name] : undefined;
+  if (!kind || !/^\d+(\.\d+)?$/.test(time) || words.length < 1) return [];
+  return [{ time: Number(time), deed: { do: name, ...kind.read(words) } }];
+}

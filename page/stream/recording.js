@@ -1,0 +1,134 @@
+// The source that is a recording: its events again, at any speed, forwards and backwards. No hand changes it.
+
+/** @import { Listener, Source, StreamEvent } from "./source.js" */
+import { STREAM_VERSION } from "./source.js";
+
+const FULL_SPEED = 20; // where one asks for as fast as it can
+const FIXED = "This is a recording: nothing can be changed in it. Reload the page for running tiles.";
+
+/**
+ * The events of a file: the first one of the stream, and those of the run.
+ * @param {string} text
+ * @returns {StreamEvent[]}
+ * @throws {Error} it is none; in words for a person
+ */
+export function parseRecording(text) {
+  /** @type {StreamEvent[]} */
+  const events = [];
+  text.split("\n").forEach((line, index) => {
+    if (line.trim() === "") return;
+    /** @type {any} */
+    let event = null;
+    try {
+      event = JSON.parse(line);
+    } catch {
+      // said below
+    }
+    if (typeof event !== "object" || event === null || typeof event.time !== "number") {
+      throw new Error(`line ${index + 1} is no event; choose a recording (.jsonl)`);
+    }
+    events.push(event);
+  });
+  const [first, run] = events;
+  if (first?.stream === undefined || !run?.run) {
+    throw new Error("it does not begin as a recording of the page does; choose another one");
+  }
+  if (first.stream !== STREAM_VERSION) throw new Error(`it has version ${first.stream}, this page ${STREAM_VERSION}`);
+  return events;
+}
+
+/** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event */
+function subjectOf(event) {
+  const kind = ["place", "open", "display", "cable"].find((one) => one in event);
+  if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
+  if (event.raw === undefined) return "";
+  const [name, , side] = event.raw.split(",");
+  return `raw ${event.port} ${name === "$LINK" ? `${name} ${side}` : name}`;
+}
+
+/**
+ * @param {StreamEvent[]} recorded of `parseRecording`
+ * @param {Listener} listener
+ * @returns {Source}
+ */
+export function openRecording(recorded, listener) {
+  const [first, run, ...rest] = recorded;
+  const events = rest.filter((event) => !event.pace && !event.jump);
+  const end = Math.max(0, ...rest.slice(-1).map((event) => event.time), events.at(-1)?.time ?? 0);
+  let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
+  /** @type {StreamEvent[]} */
+  let waiting = [{ ...first, source: "recording" }];
+  let before = performance.now();
+  let frame = requestAnimationFrame(tick);
+
+  /** @param {StreamEvent} event */
+  const tell = (event) => waiting.push(event);
+  const tellPace = () => tell({ time, pace: { speed, paused, share: 1, end } });
+
+  /** @param {number} to */
+  function pass(to) {
+    time = Math.min(to, end);
+    while (place < events.length && events[place].time <= time) tell(events[place++]);
+    if (time >= end) paused = true;
+    tellPace();
+  }
+
+  /** @param {number} wanted */
+  function seek(wanted) {
+    const from = time;
+    /** @type {Map<string, StreamEvent>} */
+    const last = new Map();
+    for (place = 0; place < events.length && events[place].time <= wanted; place++) {
+      const subject = subjectOf(events[place]);
+      last.delete(subject); // so that it comes where the latest one does
+      if (subject) last.set(subject, events[place]);
+    }
+    time = Math.min(wanted, end);
+    paused = true;
+    tell({ time, jump: { from } });
+    for (const event of last.values()) tell(event);
+    tellPace();
+  }
+
+  /** @param {number} now */
+  function tick(now) {
+    const passed = Math.min(Math.max(0, now - before) / 1000, 0.1);
+    before = now;
+    if (!paused && !isResting) pass(time + passed * (speed || FULL_SPEED));
+    if (waiting.length) {
+      const shown = waiting;
+      waiting = [];
+      listener.onEvents(shown);
+    }
+    frame = requestAnimationFrame(tick);
+  }
+
+  /** @type {Record<string, (command: any) => void>} */
+  const obeyed = {
+    open: (command) => {
+      [time, place, speed, paused] = [0, 0, command.speed, false];
+      tell(run);
+      pass(0);
+    },
+    pace: (command) => {
+      ({ speed, paused } = command);
+      tellPace();
+    },
+    step: ({ seconds }) => {
+      if (paused) pass(time + seconds);
+      paused = true;
+    },
+    seek: ({ seconds }) => seek(seconds),
+    rest: ({ on }) => {
+      isResting = on;
+    },
+  };
+  return {
+    send(command) {
+      const obey = obeyed[command.do];
+      if (obey) obey(command);
+      else tell({ time, refused: FIXED });
+    },
+    close: () => cancelAnimationFrame(frame),
+  };
+}

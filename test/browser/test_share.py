@@ -1,0 +1,138 @@
+"""What one can take along: a picture, a recording that the page replays, a link."""
+
+import json
+import re
+import struct
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+from support.browser import Visit
+from support.page_server import PageServer
+from tilenca.fleet.recording import parse_event
+from tilenca.protocol.stream import KINDS
+
+
+def saved(visit: Visit, button: str, folder: Path) -> Path:
+    """The file that a button of the dialog hands over."""
+    with visit.page.expect_download() as download:
+        visit.page.get_by_role("button", name=button).click()
+    path = folder / download.value.suggested_filename
+    download.value.save_as(path)
+    return path
+
+
+@pytest.fixture
+def shared(visit: Visit, server: PageServer) -> Visit:
+    """A run whose 8 has become a 9, standing, with the dialog open."""
+    visit.page.goto(f"{server.url}?speed=0.3&spread=0.1&until=0.7")
+    visit.page.get_by_role("button", name="Go on").wait_for()
+    visit.wait_for_verdict("All 16 tiles show 8")
+    visit.page.locator("[data-port=tile-11]").focus()
+    visit.page.keyboard.press("Delete")
+    visit.page.get_by_role("button", name="Go on").click()
+    visit.wait_for_verdict("All 15 tiles show 9")
+    visit.page.get_by_role("button", name="Pause").click()
+    visit.page.get_by_role("button", name="Go on").wait_for()
+    visit.page.get_by_role("button", name="Share").click()
+    visit.page.locator("#share").wait_for()
+    return visit
+
+
+def test_a_picture_is_a_png_of_the_board(shared: Visit, tmp_path: Path) -> None:
+    path = saved(shared, "Picture", tmp_path)
+    data = path.read_bytes()
+    assert (path.suffix, data[:8]) == (".png", b"\x89PNG\r\n\x1a\n")
+    width, height = struct.unpack(">II", data[16:24])
+    assert (width, height) == (4 * 120 + 96, 5 * 120 + 96 + 44)
+    assert len(data) > 20_000
+
+
+def test_a_recording_is_replayed_forwards_and_backwards(shared: Visit, tmp_path: Path) -> None:
+    path = saved(shared, "Record", tmp_path)
+    events = [json.loads(line) for line in path.read_text().splitlines()]
+    assert [next(key for key in event if key in KINDS) for event in events[:2]] == ["stream", "run"]
+    times = [event["time"] for event in events]
+    assert times == sorted(times)
+    assert all(parse_event(json.dumps(event)) for event in events if "raw" in event)
+    end = events[-1]["pace"]["end"]
+    page = shared.page
+    page.set_input_files("#share-file", path)
+    shared.wait_until("document.getElementById('notice').textContent.startsWith('A recording')")
+    shared.wait_for_verdict("All 15 tiles show 9")
+    page.locator("#moment").fill("650")
+    shared.wait_for_verdict("All 16 tiles show 8")
+    assert f"0.65 of {end:.2f} s" in page.inner_text("#timeline")
+    page.locator("[data-port=tile-09]").focus()
+    page.keyboard.press("Delete")
+    page.locator("#notice", has_text="nothing can be changed").wait_for()
+    page.get_by_role("button", name="Go on").click()
+    shared.wait_for_verdict("All 15 tiles show 9")
+    page.wait_for_selector("[data-port=tile-11]", state="detached")
+
+
+def test_a_future_that_was_left_is_not_in_the_recording(shared: Visit, tmp_path: Path) -> None:
+    page = shared.page
+    page.keyboard.press("Escape")
+    page.locator("#moment").fill("650")
+    shared.wait_until("document.getElementById('clock').textContent === '0.65 s'")
+    page.locator("[data-port=tile-01]").focus()
+    page.keyboard.press("Delete")
+    page.get_by_role("button", name="One update").click()
+    shared.wait_until("document.getElementById('clock').textContent === '0.67 s'")
+    page.get_by_role("button", name="Share").click()
+    events = [json.loads(line) for line in saved(shared, "Record", tmp_path).read_text().splitlines()]
+    assert events[-1]["pace"]["end"] == pytest.approx(0.67, abs=1e-3)
+    assert [event["port"] for event in events if event.get("place", 0) is None] == ["tile-01"]
+
+
+def test_what_is_no_recording_is_refused(shared: Visit, tmp_path: Path) -> None:
+    for text, words in (
+        ("{}", "line 1 is no event"),
+        ('{"time": 1, "port": "a", "raw": "$ASK*43"}', "does not begin as a recording of the page"),
+        ('{"time": 0, "stream": 99}\n{"time": 0, "run": {"seed": 1}}', "version 99"),
+    ):
+        file = tmp_path / "some.jsonl"
+        file.write_text(text)
+        shared.page.set_input_files("#share-file", file)
+        shared.page.locator("#notice", has_text=words).wait_for()
+    assert shared.verdict == "All 15 tiles show 9"
+
+
+def test_the_link_is_the_run_with_all_that_hands_did(shared: Visit, tmp_path: Path) -> None:
+    """Whoever opens it sees the same at the same moment, to the byte of each state."""
+    page = shared.page
+    page.keyboard.press("Escape")
+    page.locator("[data-port=tile-02]").click()
+    page.get_by_role("button", name="Freeze").click()
+    for _ in range(5):
+        page.get_by_role("button", name="One update").click()
+    told = """async () => {
+      const { tiles } = await import("./main.js");
+      const names = ["port", "place", "label", "margin", "frozen", "segments", "rgb", "leds"];
+      return tiles.laid().map((tile) => Object.fromEntries(names.map((name) => [name, tile[name]])));
+    }"""
+    page.wait_for_selector("[data-port=tile-02][data-state=frozen]")
+    page.wait_for_timeout(500)
+    before = page.evaluate(told)
+    clock = page.inner_text("#clock")
+    page.get_by_role("button", name="Share").click()
+    link = page.input_value("#share-link")
+    assert "shape=digits/8" in link
+    assert re.findall(r"deed=[\d.]+,(\w+),([^&]+)", link) == [("pull", "11"), ("freeze", "2,1")]
+    page.goto(link)
+    shared.wait_until(f"document.getElementById('clock').textContent === '{clock}'")
+    page.get_by_role("button", name="Go on").wait_for()
+    page.wait_for_timeout(300)
+    after = page.evaluate(told)
+    assert sum(tile["frozen"] for tile in after) == 1
+    assert after == before
+
+
+def test_the_dialog_goes_by_keyboard_and_says_what_it_is(shared: Visit) -> None:
+    assert Axe().run(shared.page).violations_count == 0
+    shared.page.keyboard.press("Space")  # does not let the run go on
+    shared.page.keyboard.press("Escape")
+    shared.page.locator("#share").wait_for(state="hidden")
+    assert shared.page.get_by_role("button", name="Go on").is_visible()

@@ -1,0 +1,66 @@
+"""The bundle of the page that needs no server of its own has all that it loads."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from release.page_bundle import BEHIND, BundleError, lay_out, main, modules_of
+from tilenca.base import paths
+
+
+@pytest.fixture
+def web(tmp_path: Path, firmware: Path) -> Path:
+    """What `make web` builds, with a module that imports another, and no real WebAssembly."""
+    folder = tmp_path / "web"
+    (folder / "stream").mkdir(parents=True)
+    (folder / "stream" / "worker.js").write_text('import { Tile } from "../tile.js";\n// from "./none.js";\n')
+    (folder / "tile.js").write_text(
+        'import {\n  one,\n  two,\n} from "./sides.js";\nexport { a } from "./a.js";\n'
+    )
+    (folder / "sides.js").write_text("export const one = 1;\n")
+    (folder / "a.js").write_text('import "node:fs";\n')
+    (folder / "simulator.js").write_text("")
+    (folder / "tilenca_emulator.wasm").write_bytes(b"\0asm")
+    (folder / "firmware.elf").write_bytes(firmware.read_bytes())
+    return folder
+
+
+def test_it_has_the_page_the_emulator_and_what_is_offered(web: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    (out / "old").mkdir(parents=True)
+    assert main([str(web), str(out)]) == 0
+    files = {str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()}
+    page = {str(path.relative_to(paths.PAGE)) for path in paths.PAGE.rglob("*") if path.is_file()}
+    beside = [
+        "stream/worker.js",
+        "tile.js",
+        "sides.js",
+        "a.js",
+        "tilenca_emulator.wasm",
+        "firmware.elf",
+        "offer.json",
+    ]
+    assert files == page | {f"emulator/{name}" for name in beside}
+    assert BEHIND.format("emulator") in (out / "index.html").read_text()
+    offer = json.loads((out / "emulator" / "offer.json").read_text())
+    assert (offer["period_ms"], offer["updates"]) == (20, 0)
+    assert offer["stream"]["drawings"][8]["name"] == "digits/8"
+
+
+def test_what_is_not_built_is_named(web: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (web / "sides.js").unlink()
+    with pytest.raises(BundleError, match=r"sides\.js: not there; run: make web"):
+        modules_of(web, Path("stream/worker.js"))
+    (web / "sides.js").touch()
+    (web / "tilenca_emulator.wasm").unlink()
+    with pytest.raises(BundleError, match=r"tilenca_emulator.wasm: not there"):
+        lay_out(web, tmp_path / "out")
+    assert main([str(web), str(tmp_path / "out")]) == 4
+    assert capsys.readouterr().err.startswith("page_bundle: ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_it_wants_two_folders(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "usage" in capsys.readouterr().err

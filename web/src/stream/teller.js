@@ -1,0 +1,137 @@
+// What the page is told of a board: all that is news, and after a jump in time all that there is: the twin of
+// `tilenca.page.teller`.
+import { sorted } from "./faults.js";
+import { Lines } from "./lines.js";
+import { SIDES } from "./sides.js";
+
+const NO_POWER = "no power";
+
+/** @typedef {{ time: number, [subject: string]: unknown }} StreamEvent */
+/** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, display: string }} Seen */
+/** What a tile has said: the beginning of its next line, and its last line of each kind. @typedef {{ lines: Lines, last: Map<string, StreamEvent> }} Voice */
+
+/** @param {number} time @param {Record<string, unknown>} about @returns {StreamEvent} */
+export const event = (time, about) => ({ time: Number(time.toFixed(6)), ...about });
+
+/** @param {number} index */
+export const portName = (index) => `tile-${String(index + 1).padStart(2, "0")}`;
+
+/** The name of a sentence, and the side of a `$LINK`. @param {string} raw */
+function subjectOf(raw) {
+  const [name, , side] = raw.split(",");
+  return name === "$LINK" ? `${name} ${side}` : name;
+}
+
+/** @param {number} one @param {number} other */
+const byPort = (one, other) => (portName(one) < portName(other) ? -1 : Number(one !== other));
+
+/** Looks at a board, and tells the page. */
+export class Teller {
+  /** @type {Seen[]} */
+  #seen = [];
+  /** The cables that the page knows to be cut. @type {import("../array.js").Link[]} */
+  #cut = [];
+  /** @type {Voice[]} */
+  #voices = [];
+
+  /** @param {import("./board.js").Board} board */
+  constructor(board) {
+    this.board = board;
+  }
+
+  /** What lies where, has power, and is joined, as far as it is news. */
+  places() {
+    const { array, places, cut } = this.board;
+    const now = array.timeS;
+    /** @type {StreamEvent[]} */
+    const events = [];
+    while (this.#seen.length < array.size) this.#seen.push({ place: "", powered: null, display: "" });
+    while (this.#voices.length < array.size) this.#voices.push({ lines: new Lines(), last: new Map() });
+    this.#seen.forEach((seen, index) => {
+      const [port, place, { powered }] = [portName(index), places.get(index), array.tile(index)];
+      if ((place?.join() ?? "") !== seen.place) {
+        seen.place = place?.join() ?? "";
+        events.push(event(now, { port, place: place ? [...place] : null }));
+      }
+      if (place && powered !== seen.powered) {
+        seen.powered = powered;
+        events.push(event(now, { port, open: powered, reason: powered ? "" : NO_POWER }));
+      }
+    });
+    const [before, after] = [this.#cut, cut].map((links) => new Set(links.map(String)));
+    const news = [...this.#cut, ...cut].filter((link) => before.has(String(link)) !== after.has(String(link)));
+    for (const link of sorted(news)) {
+      const cable = after.has(String(link)) ? "cut" : "whole";
+      events.push(event(now, { port: portName(link[0]), side: SIDES[link[1]], cable }));
+    }
+    this.#cut = cut;
+    return events;
+  }
+
+  /** All that is news; with `frames`, the frames on the cables, too. @param {boolean} frames */
+  look(frames) {
+    const { array, traffic } = this.board;
+    const now = array.timeS;
+    const events = this.places();
+    const passed = traffic.read();
+    for (const { timeS, tile, side, data } of frames ? passed : []) {
+      events.push(event(timeS, { port: portName(tile), side: SIDES[side], frame: data }));
+    }
+    events.push(...this.#lines());
+    this.#seen.forEach((seen, index) => {
+      const tile = array.tile(index);
+      const leds = [...SIDES].map((name, side) => ((tile.leds >> side) & 1 ? name : "-")).join("");
+      const display = { segments: tile.segments, rgb: [...tile.rgb], leds };
+      if (JSON.stringify(display) === seen.display) return;
+      seen.display = JSON.stringify(display);
+      events.push(event(now, { port: portName(index), display }));
+    });
+    return events;
+  }
+
+  #lines() {
+    const said = this.#voices.flatMap(({ lines, last }, index) => {
+      const tile = this.board.array.tile(index);
+      for (let got = tile.receive(); got.values.length > 0; got = tile.receive()) lines.feed(got.values, got.times);
+      return lines.take().map(({ timeS, raw }) => {
+        const told = event(timeS, { port: portName(index), raw });
+        last.set(subjectOf(raw), told);
+        return { timeS, index, told };
+      });
+    });
+    return said.sort((one, two) => one.timeS - two.timeS || byPort(one.index, two.index)).map(({ told }) => told);
+  }
+
+  // --- moments ---
+
+  /** What the tiles have said until now. */
+  save() {
+    return this.#voices.map(copied);
+  }
+
+  /** The board has gone to the moment of a `save`: forgets what the page knows. @param {Voice[]} said */
+  restore(said) {
+    const { array } = this.board;
+    for (let tile = 0; tile < array.size; tile++) array.tile(tile).readSerial(); // of the future that is left
+    this.#voices = said.map(copied);
+    this.#forget();
+  }
+
+  #forget() {
+    this.#seen = [];
+    this.#cut = [];
+  }
+
+  /** Everything, for a page that knows nothing; lines have the times at which they were said. */
+  all() {
+    this.#forget();
+    this.look(false);
+    const said = this.#voices.flatMap(({ last }, index) => [...last.values()].map((told) => ({ index, told })));
+    said.sort((one, two) => one.told.time - two.told.time || byPort(one.index, two.index));
+    this.#forget();
+    return [...this.places(), ...said.map(({ told }) => told), ...this.look(false)];
+  }
+}
+
+/** @param {Voice} voice @returns {Voice} */
+const copied = ({ lines, last }) => ({ lines: lines.copy(), last: new Map(last) });

@@ -1,0 +1,97 @@
+// A worker that speaks as the WebSocket of `tilenca page` does (docs/PROTOCOL.md section 7): commands in, batches of
+// events out. The folder above this one has the module, the firmware and the offer.
+import { Emulator } from "../emulator.js";
+import { TilencaError } from "../module.js";
+import { EmulatedSource } from "./source.js";
+
+const TICK_MS = 1000 / 60;
+// A run that was held up does not catch up with more than this.
+const MOST_TICK_S = 0.1;
+// Batches that may be on their way, unseen; while there are more, time stands still.
+const MOST_UNSEEN = 3;
+const MOST_REFUSAL = 300; // characters
+
+/** @typedef {import("./source.js").StreamEvent} StreamEvent */
+
+/** @param {string} name of a file of the bundle */
+async function fetched(name) {
+  const response = await fetch(new URL(`../${name}`, import.meta.url));
+  if (!response.ok) throw new TilencaError(`${name}: ${response.status} ${response.statusText}; serve the whole bundle`);
+  return response;
+}
+
+async function ready() {
+  const [emulator, offer, image] = await Promise.all([
+    Emulator.load(),
+    fetched("offer.json").then((response) => response.json()),
+    fetched("firmware.elf").then((response) => response.arrayBuffer()),
+  ]);
+  const firmware = { name: "firmware.elf", bytes: new Uint8Array(image) };
+  return new EmulatedSource(emulator, firmware, offer, () => performance.now() / 1000);
+}
+
+/** @param {unknown} error @returns {StreamEvent} */
+function refusal(error) {
+  const words = error instanceof TilencaError ? error.message : `the run broke off: ${error}`;
+  return { time: 0, refused: words.slice(0, MOST_REFUSAL) };
+}
+
+/** Runs the source for as long as the page is there. */
+class Session {
+  #sent = 0;
+  #seen = 0;
+  #beforeMs = performance.now();
+  /** Of the next turn. @type {ReturnType<typeof setTimeout> | undefined} */
+  #timer;
+
+  /** @param {EmulatedSource} source */
+  constructor(source) {
+    this.source = source;
+    this.#deliver(source.begin());
+    this.#turn();
+  }
+
+  /** @param {import("./commands.js").Command} command */
+  take(command) {
+    if (command.do === "seen") {
+      this.#seen = Math.max(this.#seen, Math.min(Number(command.batch), this.#sent));
+    } else {
+      this.#attempt(() => this.source.take(command));
+    }
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.#turn(), 0);
+  }
+
+  #turn() {
+    clearTimeout(this.#timer);
+    const nowMs = performance.now();
+    const dueMs = this.#beforeMs + TICK_MS - nowMs;
+    if (dueMs > 1 && !this.source.isIdle) {
+      this.#timer = setTimeout(() => this.#turn(), dueMs);
+      return;
+    }
+    if (this.#sent - this.#seen >= MOST_UNSEEN) return; // `seen` wakes it
+    const tickS = Math.min((nowMs - this.#beforeMs) / 1000, MOST_TICK_S);
+    this.#beforeMs = nowMs;
+    this.#attempt(() => this.#deliver(this.source.advance(tickS)));
+    if (!this.source.isIdle) this.#timer = setTimeout(() => this.#turn(), this.#beforeMs + TICK_MS - performance.now());
+  }
+
+  /** @param {() => void} act */
+  #attempt(act) {
+    try {
+      act();
+    } catch (error) {
+      this.#deliver([refusal(error)]);
+    }
+  }
+
+  /** @param {StreamEvent[]} events */
+  #deliver(events) {
+    if (events.length > 0) self.postMessage({ batch: ++this.#sent, events });
+  }
+}
+
+const session = ready().then((source) => new Session(source));
+session.catch((error) => self.postMessage({ batch: 0, events: [refusal(error)] }));
+self.onmessage = ({ data }) => void session.then((running) => running.take(data), () => {});
