@@ -102,6 +102,7 @@ def test_of_a_file_with_very_many_drawings_some_are_asked_by_the_seed(tmp_path: 
     assert len(set(first)) == MOST_DRAWN
     assert [shape.label for shape in suites[0].drawn[1].drawings.shapes] == ["7"]
     assert suites[0].dead == ()
+    assert not suites[0].slow_changes
 
 
 def test_files_that_are_never_trained_on_measure_the_model(tmp_path: Path) -> None:

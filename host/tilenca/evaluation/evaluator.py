@@ -74,7 +74,7 @@ class Evaluator:
         yield from self.disturbed()
         yield from self.unknown()
         yield from self.agreeing()
-        yield from self.changes()
+        yield from self.changes(one_by_one=self.suite.slow_changes)
         yield from self.longevity()
 
     def agreement(self, schedules: Mapping[ScheduleKind, str] = SCHEDULES) -> Iterator[Measurement]:

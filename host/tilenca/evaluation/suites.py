@@ -48,6 +48,7 @@ class Suite:
         varied: variants of held-out forms; None: the classes are just their drawings.
         dead: the drawings at a larger size, with shares of dead tiles.
         agreeing: any connected drawings, whose tiles must agree on one answer.
+        slow_changes: whether to change drawings tile by tile, too, which takes long where they are large.
     """
 
     drawn: tuple[Case, ...]
@@ -58,6 +59,7 @@ class Suite:
     varied: Case | None = None
     dead: tuple[Case, ...] = ()
     agreeing: tuple[Case, ...] = ()
+    slow_changes: bool = True
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,7 @@ def make_suite(
         varied_case(task, aims, seed, split),
         () if shortened else tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
         tuple(agreeing_cases(task, first, aimed, seed)),
+        slow_changes=not shortened,
     )
 
 
