@@ -15,7 +15,7 @@ import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
-import { MOST_DEEDS } from "./stream/deeds.js";
+import { MOST_DEEDS, MOST_TEXT } from "./stream/deeds.js";
 import { faultsNow, kindsChangedBy } from "./stream/faults.js";
 import { Recorder } from "./stream/recorder.js";
 import { openRecording } from "./stream/recording.js";
@@ -149,6 +149,10 @@ function linkUntilNow() {
   const until = Number(tiles.time.toFixed(6));
   const deeds = tiles.deeds.filter(({ time }) => time <= until);
   const run = { ...opened, speed: start?.speed ?? opened.speed, model: start?.model ?? "", until, deeds };
+  if (JSON.stringify(run).length > MOST_TEXT) {
+    notice.say("Too much was done for a link: it is that of the board as it lies now. Save a recording instead.");
+    return location.href;
+  }
   return new URL(writeAddress(run, tiles.drawings) + location.hash, location.href).href;
 }
 

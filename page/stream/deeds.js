@@ -6,6 +6,7 @@ import { cellsOf, rowsOf } from "./address.js";
 /** @typedef {{time: number, deed: Command}} Deed */
 
 export const MOST_DEEDS = 200;
+export const MOST_TEXT = 16_000; // characters of a command that begins a run; the server takes a little more
 
 /** @param {unknown} port "tile-04" */
 const numberOf = (port) => Number(String(port).replace(/^\D*/, ""));

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tilenca import cli
+from tilenca.base import paths
 from tilenca.report import experiments
 
 SOME = ("paper.digits.listing.10", "paper.curve.7", "gap.fast", "gap.tiles", "edges.dead")
@@ -58,3 +59,12 @@ def test_a_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.Capt
     assert said.out == ""
     assert "file" in said.err
     assert "Traceback" not in said.err
+
+
+@pytest.mark.usefixtures("firmware")
+def test_the_firmware_of_another_model_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(paths, "DEFAULT_MODEL", paths.MODELS / "hex")
+    assert cli.main(["report", "--quick", "--out", str(tmp_path / "out")]) == 4
+    assert "not the firmware of hex; run: tilenca export --model hex && pio run" in capsys.readouterr().err

@@ -75,4 +75,6 @@ def test_a_row_by_itself_is_the_row_of_the_table(suite: Suite) -> None:
         alone = list(Evaluator(engine, suite, 2, 7, [row.name]).rows())
         assert row in alone
         assert {other.name for other in alone} <= {other.name for other in every if row.name in other.name}
+        exact = Evaluator(engine, suite, 2, 7, [f"={row.name}"]).rows()
+        assert {other.name for other in exact} == {row.name}
     assert not list(Evaluator(engine, suite, 2, 7, ["no such row"]).rows())

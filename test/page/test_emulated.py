@@ -310,3 +310,17 @@ def test_deeds_at_the_beginning_come_before_all(source: EmulatedSource) -> None:
     events = source.advance(0.0)
     assert of(events, "deed")[0]["deed"] == {"do": "arrange", "cells": cells}
     assert [event["port"] for event in of(events, "place")] == ["tile-02"]
+
+
+def test_a_planned_deed_that_cannot_be_done_is_told_once_and_stops_nothing(source: EmulatedSource) -> None:
+    deeds = tuple((0.0, commands.Pull(port)) for port in ("tile-99", "tile-01"))
+    source.take(commands.Open(FOUR, paused=True, deeds=(*deeds, (0.1, commands.Pull("tile-98")))))
+    events = source.advance(0.0)
+    assert [event["refused"] for event in of(events, "refused")] == ["no tile tile-99 lies on the board"]
+    source.take(commands.Step(0.2))
+    assert len(of(source.advance(0.0), "refused")) == 1
+    for seconds in (0.0, 0.2):  # the past is run again without them
+        source.take(commands.Seek(seconds))
+        events = source.advance(0.0)
+        assert of(events, "jump")
+        assert not of(events, "refused")

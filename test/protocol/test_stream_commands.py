@@ -123,3 +123,9 @@ def test_any_object_is_a_command_within_its_bounds_or_refused(about: dict[str, A
 def test_any_text_is_a_command_or_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         parse_command(text)
+
+
+def test_deeds_in_deeds_in_deeds_are_refused_before_they_are_read() -> None:
+    text = '{"do":"open","cells":[[0,0]],"deeds":[[0,' * 300 + '{"do":"pull","port":"a"}' + "]]}" * 300
+    with pytest.raises(ValueError, match="must be commands that change something, and open does not"):
+        parse_command(text)

@@ -12,7 +12,7 @@ QUICK = Call("paper.listing", ("evaluate", "--schedule", "listing", "--runs", "1
 
 
 def test_a_command_runs_and_its_result_stays(tmp_path: Path) -> None:
-    folder = Folder(tmp_path / "results")
+    folder = Folder(tmp_path / "results", [])
     assert folder.read(QUICK) is None
     result = run_command(None, QUICK)
     assert result["runs"] == 1
@@ -25,8 +25,17 @@ def test_a_command_runs_and_its_result_stays(tmp_path: Path) -> None:
     assert folder.read(other) is None, "other arguments have no result yet"
 
 
+def test_results_of_another_model_are_measured_again(tmp_path: Path) -> None:
+    model = tmp_path / "weights.npz"
+    model.write_bytes(b"one")
+    Folder(tmp_path / "results", [model]).write(QUICK, {"runs": 1})
+    assert Folder(tmp_path / "results", [model]).read(QUICK) == {"runs": 1}
+    model.write_bytes(b"other")
+    assert Folder(tmp_path / "results", [model]).read(QUICK) is None
+
+
 def test_a_damaged_result_is_measured_again(tmp_path: Path) -> None:
-    folder = Folder(tmp_path)
+    folder = Folder(tmp_path, [])
     folder.write(QUICK, {"runs": 1})
     (file,) = tmp_path.iterdir()
     file.write_text('{"runs": ')

@@ -58,6 +58,8 @@ MISTAKES: list[dict[str, Any]] = [
     {"do": "open", "cells": [[0, 0]], "deeds": [[-1, {"do": "pull", "port": "a"}]]},
     {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "pace", "speed": 1}]]},
     {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "pull"}]]},
+    {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "open", "cells": 3}]]},
+    {"do": "constructor"},
     *({"do": "open", "cells": [[0, 0], [0, 1]], "faults": [fault]} for fault in [
         "fly", "loss", "loss=2", "cut", "cut=1@1", "loss=x", "off@3", "off@1:2-1", "reset@1:1-2", "cut@1N",
         "cut@1:x", "delay=5@1:1:2", "",
@@ -159,6 +161,26 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
     assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
     assert [event["time"] for event in jumps] == pytest.approx(went_to, abs=1e-4)
+
+
+def test_planned_deeds_that_cannot_be_done_are_told_and_forgotten_alike(both: Any) -> None:
+    deeds = [
+        [0, {"do": "pull", "port": "tile-99"}],
+        [0.0080083, {"do": "reset", "port": "tile-02"}],  # between two quanta, and half of one apart
+        [0.008008, {"do": "pull", "port": "tile-98"}],
+        [0.1, {"do": "put", "row": 0, "col": 0}],  # a tile lies there
+        [0.1, {"do": "pull", "port": "tile-03"}],  # of the same moment, and done
+    ]
+    step = {"do": "step", "seconds": 0.1}
+    back = [{"do": "seek", "seconds": seconds} for seconds in (0.0, 0.25, 0.05)]
+    answers = both([opened(3, cells=EIGHT, deeds=deeds), *[step] * 5, *back, step])
+    told = [event["refused"] for events in answers for event in events if "refused" in event]
+    assert told[:2] == ["no tile tile-99 lies on the board", "no tile tile-98 lies on the board"]
+    assert len(told) == 3, "once each, although the past is run again"
+    away = [
+        event["port"] for events in answers for event in events if "place" in event and event["place"] is None
+    ]
+    assert "tile-03" in away
 
 
 def test_planned_deeds_are_told_alike(both: Any) -> None:

@@ -106,7 +106,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="TEXT",
-        help="of the suite, only rows with this in their name; again for more",
+        help="of the suite, only rows with this in their name, or =NAME for one row; again for more",
     )
     add_condition_arguments(parser)
     parser.add_argument(

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 
 from tilenca import __version__
 from tilenca.base import paths
-from tilenca.base.errors import InterruptedRunError
+from tilenca.base.errors import BuildError, InterruptedRunError
 from tilenca.base.processors import processors
 from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.stdio import warn
 from tilenca.base.whole_file import write_whole
 from tilenca.commands.arguments import add_cluster_arguments, existing_image
-from tilenca.model.file import load_model
+from tilenca.emulator.greeting import greeting
+from tilenca.model.file import Model, load_model
 from tilenca.views.progress import show_progress
 
 if TYPE_CHECKING:
@@ -55,10 +56,12 @@ def run(args: argparse.Namespace) -> int:
     from tilenca.report.measure import Folder, calls_of, rows_of
     from tilenca.views.report import draw_figure
 
-    existing_image(firmware_image(), build_remedy())
-    model = load_model(paths.DEFAULT_MODEL)
+    model, image = load_model(paths.DEFAULT_MODEL), firmware_image()
+    existing_image(image, build_remedy())
+    _check_firmware(image, model)
     experiments = chosen(args.quick)
-    folder = Folder(args.out / "results")
+    measured = [*paths.MODELS.glob("*/weights.npz"), *paths.DEFAULT_SHAPES.parent.glob("*.toml"), image]
+    folder = Folder(args.out / "results", measured)
     results = _measure(args, calls_of(experiments, args.quick), folder)
     rows = rows_of(experiments, args.quick, results)
     figures = [replace(figure, svg=draw_figure(figure)) for figure in figures_of(experiments, rows)]
@@ -79,6 +82,16 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(f"{len(every)} rows; open {args.out / 'report.html'}")
     return 0
+
+
+def _check_firmware(image: Path, model: Model) -> None:
+    """The report says what the shipped digits do, and its emulated tiles must be of them."""
+    hello = greeting(image)
+    if hello is None or hello.model_id != model.model_id:
+        raise BuildError(
+            f"{image}: not the firmware of {paths.DEFAULT_MODEL.name}; run: tilenca export --model "
+            f"{paths.DEFAULT_MODEL.name} && pio run"
+        )
 
 
 def _measure(args: argparse.Namespace, calls: "list[Call]", folder: "Folder") -> "Results":

@@ -51,7 +51,7 @@ class Evaluator:
         suite: the cases to measure.
         runs: runs of each drawing; longevity takes a fifth of them over 20 steps for each.
         seed: of all chance. Every row has its own, so that it is the same alone and in the table.
-        only: texts of which a row's name must have one; none: all rows.
+        only: texts of which a row's name must have one, or be one with `=` before it; none: all rows.
     """
 
     def __init__(self, engine: Engine, suite: Suite, runs: int, seed: int, only: Sequence[str] = ()) -> None:
@@ -217,7 +217,9 @@ class Evaluator:
             yield replace(row, steps=case.steps + steps, convergence=None)
 
     def _wanted(self, name: str) -> bool:
-        return not self._only or any(text in name for text in self._only)
+        return not self._only or any(
+            name == text[1:] if text.startswith("=") else text in name for text in self._only
+        )
 
     def _those(self, cases: Iterable[Case]) -> Iterator[Case]:
         """The cases whose rows are wanted."""

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import floor
 from pathlib import Path
 
 from tilenca.base.errors import TilencaError, UsageError
@@ -18,7 +19,15 @@ from tilenca.page.teller import Said, Teller
 from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.settings import Settings
-from tilenca.protocol.stream import StreamEvent, deed_event, jump_event, pace_event, run_event, stream_event
+from tilenca.protocol.stream import (
+    StreamEvent,
+    deed_event,
+    jump_event,
+    pace_event,
+    refused_event,
+    run_event,
+    stream_event,
+)
 from tilenca.protocol.stream_fields import MAX_PLACE, MOST_TILES
 from tilenca.shapes.edits import rows_of
 from tilenca.shapes.file import UNKNOWN, Shape
@@ -135,6 +144,14 @@ class EmulatedSource:
             case commands.Noise(loss):
                 board.lose(loss)
 
+    def _do_planned(self, planned: commands.Deed) -> None:
+        """What a hand does at its time; what cannot be done is told, and forgotten."""
+        try:
+            self._do(planned[1])
+        except UsageError as error:
+            self._timeline.forget(planned)
+            self._events.append(refused_event(0.0, str(error)))
+
     def _check_room(self, more: int) -> None:
         if len(self._board.places) + more > MOST_TILES:
             raise UsageError(f"the board has {MOST_TILES} tiles, which is all; take one out first")
@@ -147,7 +164,7 @@ class EmulatedSource:
         raise UsageError(f"no tile {port} lies on the board")
 
     def _open(self, wanted: commands.Open) -> None:
-        deeds = [(round(time_s / QUANTUM_S) * QUANTUM_S, deed) for time_s, deed in wanted.deeds]
+        deeds = [(floor(time_s / QUANTUM_S + 0.5) * QUANTUM_S, deed) for time_s, deed in wanted.deeds]
         faults = tuple(parse_fault(text) for text in wanted.faults)
         cells = sorted(wanted.cells)
         settings = EmulationSettings(boot_spread_s=wanted.spread_s, seed=wanted.seed, faults=faults)
@@ -162,8 +179,8 @@ class EmulatedSource:
         self._pace = Pace(wanted.speed, wanted.paused, wanted.until_s)
         self._events = [run_event(0.0, {"seed": wanted.seed, "shape": shape.name, "tiles": len(cells)})]
         self._events += [deed_event(time_s, commands.told(deed)) for time_s, deed in deeds]
-        for _, deed in self._timeline.deeds_in(-QUANTUM_S, 0.0):
-            self._do(deed)
+        for planned in self._timeline.deeds_in(-QUANTUM_S, 0.0):
+            self._do_planned(planned)
         self._look()
         self._keep()
 
@@ -207,9 +224,9 @@ class EmulatedSource:
         """Runs on; in a past that is known, hands do what they did."""
         assert self._emulation is not None
         end_s = self._array.time_s + seconds
-        for time_s, deed in self._timeline.deeds_in(self._array.time_s, end_s):
-            self._emulation.pass_time(max(time_s - self._array.time_s, 0.0))
-            self._do(deed)
+        for planned in self._timeline.deeds_in(self._array.time_s, end_s):
+            self._emulation.pass_time(max(planned[0] - self._array.time_s, 0.0))
+            self._do_planned(planned)
         if end_s > self._array.time_s:
             self._emulation.pass_time(end_s - self._array.time_s)
         self._timeline.reached(self._array.time_s)

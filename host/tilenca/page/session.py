@@ -25,7 +25,6 @@ MOST_COMMANDS = 256
 # Emulated; a longer step is made of several, so that a run can end in between.
 STEP_SLICE_S = 0.05
 LEAST_STEP_S = 1e-6  # less is a rounding error
-MOST_REFUSAL = 300  # characters
 
 
 class Source(Protocol):
@@ -157,4 +156,4 @@ class Session:
 
 
 def _refusal(error: Exception, before: str = "") -> StreamEvent:
-    return refused_event(0.0, f"{before}{error}"[:MOST_REFUSAL])
+    return refused_event(0.0, f"{before}{error}")

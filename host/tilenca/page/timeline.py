@@ -77,6 +77,10 @@ class Timeline(Generic[Moment, Deed]):
         self._deeds.append((now_s, deed))
         self.end_s = now_s
 
+    def forget(self, planned: tuple[float, Deed]) -> None:
+        """A deed that cannot be done is not done again."""
+        self._deeds = [one for one in self._deeds if one is not planned]
+
     def reached(self, now_s: float) -> None:
         """The run has come to a time."""
         self.end_s = max(self.end_s, now_s)
@@ -86,7 +90,7 @@ class Timeline(Generic[Moment, Deed]):
     def deeds_in(self, from_s: float, to_s: float) -> list[tuple[float, Deed]]:
         """What hands did after a time, up to another."""
         half = QUANTUM_S / 2
-        return [(time_s, deed) for time_s, deed in self._deeds if from_s + half < time_s <= to_s + half]
+        return [one for one in self._deeds if from_s + half < one[0] <= to_s + half]
 
     def nearest(self, time_s: float) -> tuple[float, Moment]:
         """The last moment before a time, or the first of all."""

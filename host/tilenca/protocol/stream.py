@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 STREAM_VERSION = 1
 # Every byte is a character of Latin-1 and back.
 RAW_ENCODING = "latin-1"
+MOST_REFUSAL = 300  # characters
 
 StreamEvent: TypeAlias = dict[str, Any]
 
@@ -93,5 +94,5 @@ def frame_event(time_s: float, port: str, side: str, data: bytes) -> StreamEvent
 
 
 def refused_event(time_s: float, reason: str) -> StreamEvent:
-    """A command was not carried out."""
-    return _event(time_s, refused=reason)
+    """A command was not carried out; the reason is cut where it is long."""
+    return _event(time_s, refused=reason[:MOST_REFUSAL])

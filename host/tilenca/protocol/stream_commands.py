@@ -20,9 +20,11 @@ def _deed(value: object) -> "Deed":
     if not isinstance(value, list) or len(value) != 2 or not isinstance(value[1], dict):
         raise ValueError("must be deeds, [seconds, command] each")
     time_s: float = must_be.number(0, MAX_SECONDS)(value[0])
+    name = value[1].get("do")
+    if isinstance(name, str) and name in KINDS and KINDS[name] not in HANDS:  # before its own deeds are read
+        raise ValueError(f"must be commands that change something, and {name} does not")
     command = _read(dict(value[1]))
-    if not isinstance(command, HANDS):
-        raise ValueError(f"must be commands that change something, and {value[1]['do']} does not")
+    assert isinstance(command, HANDS)
     return time_s, command
 
 

@@ -60,17 +60,19 @@ class Folder:
 
     Args:
         path: the folder; it is made.
+        measured: files that the results depend on: models, shapes, the firmware.
 
-    A result of other arguments or of other software is measured again.
+    A result of other arguments, other software or other files is measured again.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, measured: Sequence[Path]) -> None:
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
-        self._software = repr(fingerprint())
+        digests = [hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(measured)]
+        self._identity = repr((fingerprint(), digests))
 
     def _file(self, call: Call) -> Path:
-        identity = json.dumps([call.arguments, self._software])
+        identity = json.dumps([call.arguments, self._identity])
         return self.path / f"{call.key}-{hashlib.sha256(identity.encode()).hexdigest()[:12]}.json"
 
     def read(self, call: Call) -> dict[str, Any] | None:

@@ -71,7 +71,7 @@ def read_suite(key: str, what: str, result: dict[str, Any], words: Words) -> lis
     del what  # every row has words of its own
     rows = []
     for row in result["metrics"]["rows"]:
-        alone = shlex.join(("tilenca", *words, "--row", row["name"]))
+        alone = shlex.join(("tilenca", *words, "--row", f"={row['name']}"))
         rows.append(
             Row(
                 f"{key}.{slug(row['name'])}@{row['steps']}",

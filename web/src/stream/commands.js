@@ -70,9 +70,12 @@ const deeds = (value) => {
     if (!isDeed || Array.isArray(deed[1])) return "must be deeds, [seconds, command] each";
     const wrong = number(0, MAX_SECONDS)(deed[0]);
     if (wrong) return wrong;
+    const { do: name } = deed[1];
+    if (typeof name === "string" && Object.hasOwn(KINDS, name) && !HANDS.includes(name)) { // before its own deeds are read
+      return `must be commands that change something, and ${name} does not`;
+    }
     try {
-      const { do: name } = checked(deed[1]);
-      if (!HANDS.includes(name)) return `must be commands that change something, and ${name} does not`;
+      checked(deed[1]);
     } catch (error) {
       return error instanceof Error ? error.message : String(error);
     }
@@ -118,7 +121,7 @@ const HANDS = ["put", "pull", "move", "arrange", "cut", "power", "freeze", "rese
  */
 export function checked(given) {
   const { do: name, ...fields } = given;
-  const kind = KINDS[name];
+  const kind = Object.hasOwn(KINDS, name) ? KINDS[name] : undefined;
   if (kind === undefined) throw new TilencaError(`a command has "do", one of: ${Object.keys(KINDS).join(", ")}`);
   /** @type {Command} */
   const command = { do: name };

@@ -6,7 +6,7 @@ import { MOST_TILES, checked } from "./commands.js";
 import { sorted } from "./faults.js";
 import { Pace, QUANTUM_S } from "./pace.js";
 import { SIDES } from "./sides.js";
-import { Teller, event, portName } from "./teller.js";
+import { Teller, event, portName, refused } from "./teller.js";
 import { Timeline } from "./timeline.js";
 
 // Up to this speed there is time to look at single frames on the cables.
@@ -128,6 +128,20 @@ export class EmulatedSource {
     }
   }
 
+  /**
+   * What a hand does at its time; what cannot be done is told, and forgotten.
+   * @param {Board} board @param {{ timeS: number, deed: Command }} planned
+   */
+  #doPlanned(board, planned) {
+    try {
+      this.#do(board, planned.deed);
+    } catch (error) {
+      if (!(error instanceof TilencaError)) throw error;
+      this.#timeline.forget(planned);
+      this.#events.push(refused(error.message));
+    }
+  }
+
   /** The tile of that port, which lies on the board. @param {string} port */
   #tile(port) {
     for (const tile of this.#board?.places.keys() ?? []) if (portName(tile) === port) return tile;
@@ -137,9 +151,10 @@ export class EmulatedSource {
   /** @param {Command} wanted */
   #open(wanted) {
     /** @type {{ timeS: number, deed: Command }[]} */
-    const deeds = wanted.deeds.map((/** @type {[number, Command]} */ [timeS, deed]) =>
-      ({ timeS: Math.round(timeS / QUANTUM_S) * QUANTUM_S, deed: checked(deed) }));
-    deeds.sort((one, other) => one.timeS - other.timeS);
+    const deeds = wanted.deeds
+      .toSorted((/** @type {[number, Command]} */ [one], /** @type {[number, Command]} */ [other]) => one - other)
+      .map((/** @type {[number, Command]} */ [timeS, deed]) =>
+        ({ timeS: Math.floor(timeS / QUANTUM_S + 0.5) * QUANTUM_S, deed: checked(deed) }));
     /** @type {Place[]} */
     const cells = sorted(wanted.cells);
     const name = this.#nameOf(cells);
@@ -154,7 +169,7 @@ export class EmulatedSource {
     this.#pace = new Pace(wanted.speed, wanted.paused, wanted.until_s);
     this.#events = [event(0, { run: { seed: wanted.seed, shape: name, tiles: cells.length } })];
     for (const { timeS, deed } of deeds) this.#tell(timeS, { deed });
-    for (const { deed } of this.#timeline.deedsIn(-QUANTUM_S, 0)) this.#do(board, deed);
+    for (const planned of this.#timeline.deedsIn(-QUANTUM_S, 0)) this.#doPlanned(board, planned);
     this.#look();
     this.#keep(board);
   }
@@ -208,9 +223,9 @@ export class EmulatedSource {
   #passTime(board, seconds) {
     const { array, faults } = board;
     const endS = array.timeS + seconds;
-    for (const { timeS, deed } of this.#timeline.deedsIn(array.timeS, endS)) {
-      faults.run(Math.max(timeS - array.timeS, 0));
-      this.#do(board, deed);
+    for (const planned of this.#timeline.deedsIn(array.timeS, endS)) {
+      faults.run(Math.max(planned.timeS - array.timeS, 0));
+      this.#doPlanned(board, planned);
     }
     if (endS > array.timeS) faults.run(endS - array.timeS);
     this.#timeline.reached(array.timeS);

@@ -5,6 +5,7 @@ import { Lines } from "./lines.js";
 import { SIDES } from "./sides.js";
 
 const NO_POWER = "no power";
+const MOST_REFUSAL = 300; // characters
 
 /** @typedef {{ time: number, [subject: string]: unknown }} StreamEvent */
 /** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, display: string }} Seen */
@@ -12,6 +13,9 @@ const NO_POWER = "no power";
 
 /** @param {number} time @param {Record<string, unknown>} about @returns {StreamEvent} */
 export const event = (time, about) => ({ time: Number(time.toFixed(6)), ...about });
+
+/** A command was not carried out; the reason is cut where it is long. @param {string} reason @returns {StreamEvent} */
+export const refused = (reason) => ({ time: 0, refused: reason.slice(0, MOST_REFUSAL) });
 
 /** @param {number} index */
 export const portName = (index) => `tile-${String(index + 1).padStart(2, "0")}`;

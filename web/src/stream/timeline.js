@@ -61,6 +61,11 @@ export class Timeline {
     this.endS = nowS;
   }
 
+  /** A deed that cannot be done is not done again. @param {{ timeS: number, deed: D }} planned */
+  forget(planned) {
+    this.#deeds = this.#deeds.filter((one) => one !== planned);
+  }
+
   /** The run has come to a time. @param {number} nowS */
   reached(nowS) {
     this.endS = Math.max(this.endS, nowS);

@@ -3,13 +3,13 @@
 import { Emulator } from "../emulator.js";
 import { TilencaError } from "../module.js";
 import { EmulatedSource } from "./source.js";
+import { refused } from "./teller.js";
 
 const TICK_MS = 1000 / 60;
 // A run that was held up does not catch up with more than this.
 const MOST_TICK_S = 0.1;
 // Batches that may be on their way, unseen; while there are more, time stands still.
 const MOST_UNSEEN = 3;
-const MOST_REFUSAL = 300; // characters
 
 /** @typedef {import("./source.js").StreamEvent} StreamEvent */
 
@@ -33,7 +33,7 @@ async function ready() {
 /** @param {unknown} error @returns {StreamEvent} */
 function refusal(error) {
   const words = error instanceof TilencaError ? error.message : `the run broke off: ${error}`;
-  return { time: 0, refused: words.slice(0, MOST_REFUSAL) };
+  return refused(words);
 }
 
 /** Runs the source for as long as the page is there. */
