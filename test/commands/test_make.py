@@ -33,6 +33,8 @@ def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
     with alone("platformio"):
         assert main(words) == first
     assert "was trained on this file already" in capsys.readouterr().err
+    assert main([*words, "--seed", "9"]) == 2
+    assert "holds a model of another file, recipe, seed or size" in capsys.readouterr().err
 
 
 def test_what_ships_and_what_is_there_is_not_overwritten(
@@ -43,7 +45,7 @@ def test_what_ships_and_what_is_there_is_not_overwritten(
     other = tmp_path / "other.toml"
     other.write_text(two_shapes.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     assert main(["make", str(other), "--out", str(trained_model), *QUICK]) == 2
-    assert "holds a model of another file or recipe" in capsys.readouterr().err
+    assert "holds a model of another file, recipe, seed or size" in capsys.readouterr().err
 
 
 def test_bad_drawings_are_refused_before_anything_is_trained(

@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
         )
     )
     status = 0
-    if _is_trained(args, out):
+    if _is_trained(args, plan, out):
         warn(_step(2, f"{out} was trained on this file already; --force trains it anew"))
     else:
         warn(_step(2, f"training; {_estimate(plan)}"))
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     model = load_model(out)
     for line in abilities(json.loads((out / "metrics.json").read_text(encoding="utf-8"))):
         print(line)
-    warn(_step(3, "building the firmware, about a minute the first time"))
+    warn(_step(3, f"building the firmware of model {model.model_id:04X}, about a minute the first time"))
     image = build_beside(model, out)
     warn(_step(4, "emulating every drawing"))
     place = shlex.quote(str(out))
@@ -131,21 +131,26 @@ def _training_words(args: argparse.Namespace, out: Path) -> list[str]:
     return words
 
 
-def _is_trained(args: argparse.Namespace, out: Path) -> bool:
-    """Whether the folder has a model of exactly this file, by this recipe.
+def _is_trained(args: argparse.Namespace, plan: TrainingPlan, out: Path) -> bool:
+    """Whether the folder has the model that this training would make.
 
     Raises:
         UsageError: it has another model.
     """
     if args.force or checkpoints(out) or not (out / "model.json").exists():
         return False
-    metadata = load_model(out).metadata
+    model = load_model(out)
+    metadata = model.metadata
+    there = (
+        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), metadata.get("seed"),
+        metadata.get("recipe", {}).get("iterations"), model.dimensions,
+    )  # fmt: skip
     sha256 = hashlib.sha256(args.shapes.read_bytes()).hexdigest()
-    same_file = any(source.get("sha256") == sha256 for source in metadata.get("sources", []))
-    if same_file and metadata.get("recipe_name") == args.recipe:
+    if there == (sha256, args.recipe, args.seed, plan.recipe.iterations, plan.dimensions):
         return True
     raise UsageError(
-        f"{out}: holds a model of another file or recipe; give another --out, or --force to replace it"
+        f"{out}: holds a model of another file, recipe, seed or size; give another --out, or --force to "
+        "replace it"
     )
 
 
@@ -156,12 +161,13 @@ def _estimate(plan: TrainingPlan) -> str:
     from tilenca.training.trainer import Config
 
     config = Config(plan.recipe, plan.dimensions, plan.seeds[0], plan.task.labels, plan.task.sources)
-    trainer = make_trainer(Job(config, plan.task, plan.sizes, "cpu", Path(), False, processors()))
-    trainer.step()  # the first one also compiles
-    began_s = time.perf_counter()
-    for _ in range(min(TIMED_STEPS, plan.recipe.iterations)):
+    threads = max(1, processors() // min(processors(), len(plan.seeds)))
+    trainer = make_trainer(Job(config, plan.task, plan.sizes, "cpu", Path(), False, threads))
+    trainer.step()  # the first one takes longer
+    began_s, timed = time.perf_counter(), max(1, min(TIMED_STEPS, plan.recipe.iterations - 1))
+    for _ in range(timed):
         trainer.step()
-    each_s = (time.perf_counter() - began_s) / TIMED_STEPS
+    each_s = (time.perf_counter() - began_s) / timed
     seeds = -(-len(plan.seeds) // processors())
     minutes = each_s * plan.recipe.iterations * seeds / 60
     around_s = AROUND_S * max(1.0, int(plan.task.sizes.sum()) / AROUND_TILES)

@@ -46,7 +46,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         f"Recipe `{metadata['recipe_name']}` ({ending}), seed {metadata['seed']}, trained on {files}, "
         f"at commit {metadata['commit']}.",
         "",
-        "To make it again, to the byte on the same PyTorch and processor:",
+        "To make it again, to the byte at that commit, on the same PyTorch and processor:",
         "",
         f"    {metadata['command']}",
         "",

@@ -124,7 +124,7 @@ class Pools:
         disturbed = switched + round(recipe.state_shuffle * count)
         *parts, _ = np.split(taken, (resets, switched, disturbed))
         for number in parts[1]:
-            if recipe.settled > 0 and self.random.random() < recipe.settled:
+            if recipe.settled * recipe.undisturbed_pool > 0 and self.random.random() < recipe.settled:
                 self._copy_undisturbed(int(number))
         for numbers, disturb in zip(parts, (self.reset, self.switch, self.shuffle_states), strict=True):
             for number in numbers:
