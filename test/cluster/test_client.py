@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+import threading
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
@@ -44,6 +45,22 @@ def test_a_scheduler_may_be_given_as_the_file_it_writes(here: str, tmp_path: Pat
         (tmp_path / "cluster.json").write_text(text)
         with pytest.raises(UsageError, match=r"^--scheduler [^\n]*cluster.json: [^\n]*$"):
             Cluster(str(tmp_path / "cluster.json"), 1)
+
+
+def test_the_file_of_a_scheduler_that_is_starting_is_waited_for(
+    here: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "cluster.json"
+    whole = tmp_path / "whole.json"
+    whole.write_text(json.dumps({"address": here}))
+    soon = threading.Timer(0.7, whole.replace, [file])
+    soon.start()
+    with open_cluster(str(file), 1) as cluster:
+        assert cluster.workers() == 1
+    soon.join()
+    monkeypatch.setattr("tilenca.cluster.client.CONNECT_S", 0.1)
+    with pytest.raises(UsageError, match="neither an address with a port nor the file of a Dask scheduler"):
+        Cluster(str(tmp_path / "never.json"), 1)
 
 
 def test_without_bokeh_it_says_that_there_is_no_dashboard(here: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.shapes import batch
+from tilenca.shapes import trainable
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import Task, load_task
 
@@ -63,7 +63,7 @@ def test_every_file_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
         read.append(path.name)
         return load_task(path, max_classes)
 
-    monkeypatch.setattr(batch, "load_task", load)
+    monkeypatch.setattr(trainable, "load_task", load)
     load_training_task([paths.DEFAULT_SHAPES], 1.0, 20)
     assert read == ["digits.toml"]
     load_training_task([paths.DEFAULT_SHAPES], 10.0, 20)

@@ -198,14 +198,18 @@ def _local_cluster(jobs: int) -> distributed.LocalCluster:
 
 
 def _address_of(given: str) -> str:
-    """The address that was given, or that is in the file that a scheduler wrote.
+    """The address that was given, or that is in the file that a scheduler writes, which may take a moment.
 
     Raises:
-        ValueError: the file is none of a scheduler.
+        ValueError: the file is none of a scheduler, or does not come.
     """
-    path = Path(given)
-    if not path.is_file():
+    path, until = Path(given), time.monotonic() + CONNECT_S
+    if ":" in given and not path.is_file():
         return given
+    while not path.is_file():
+        if time.monotonic() > until:
+            raise ValueError("neither an address with a port nor the file of a Dask scheduler")
+        time.sleep(LOOK_S)
     try:
         return str(json.loads(path.read_text(encoding="utf-8"))["address"])
     except (ValueError, KeyError, TypeError) as error:
