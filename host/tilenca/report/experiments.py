@@ -31,6 +31,7 @@ INTRODUCTIONS = {
 SEED = 20_000
 SIZES = ("5x4", "7x6", "8x5", "9x7", "12x10", "14x12", "20x16")
 STEPS_OF = {"20x16": 200, "5x4": 60, "7x6": 60, "8x5": 60}
+NETWORKS = {"paper": "by the paper's recipe", "digits": "shipped model"}
 FIGURE_SHAPES = ("4", "7", "1")  # side by side, as in the paper
 
 
@@ -86,13 +87,12 @@ EXPERIMENTS = (
         Experiment(
             f"paper.{model}.listing.{steps}",
             PAPER,
-            f"ten digits, {'as published' if model == 'paper' else 'shipped model'}, the paper's listing, "
-            f"after {steps} updates",
+            f"ten digits, {NETWORKS[model]}, the paper's listing, after {steps} updates",
             _evaluate("--model", model, "--schedule", "listing", "--steps", f"{steps}"),
             "evaluation",
             (500, 50),
         )
-        for model in ("paper", "digits")
+        for model in NETWORKS
         for steps in (10, 30, 60)
     ),
     Experiment(
