@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from support.machines import in_this_process
 from tilenca.base.errors import TilencaError
+from tilenca.cluster.client import open_cluster
 from tilenca.report.experiments import EXPERIMENTS
 from tilenca.report.measure import Call, Folder, calls_of, measure, rows_of, run_command
 
@@ -19,7 +21,10 @@ def test_a_command_runs_and_its_result_stays(tmp_path: Path) -> None:
     folder.write(QUICK, result)
     assert folder.read(QUICK) == result
     told: list[int] = []
-    assert measure([QUICK], folder, None, told.append) == {QUICK.key: result}
+    other_folder = Folder(tmp_path / "measured", [])
+    with in_this_process(workers=1) as address, open_cluster(address, 1) as cluster:
+        assert measure([QUICK], other_folder, cluster, told.append) == {QUICK.key: result}
+    assert other_folder.results([QUICK]) == folder.results([QUICK]) == {QUICK.key: result}
     assert told == [1]
     other = Call(QUICK.key, (*QUICK.arguments, "--steps", "10"))
     assert folder.read(other) is None, "other arguments have no result yet"

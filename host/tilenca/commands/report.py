@@ -98,14 +98,17 @@ def _measure(args: argparse.Namespace, calls: "list[Call]", folder: "Folder") ->
     from tilenca.cluster.client import open_cluster
     from tilenca.report.measure import measure
 
-    started, missing = time.monotonic(), [call for call in calls if folder.read(call) is None]
+    started, results = time.monotonic(), folder.results(calls)
+    missing = [call for call in calls if call.key not in results]
+    if not missing:
+        return results
+    had = len(results)
     with show_progress() as tell:
 
-        def told(done: int) -> None:
-            tell("report", done / len(calls), f"{done} of {len(calls)} experiments")
+        def told(more: int) -> None:
+            tell("report", (had + more) / len(calls), f"{had + more} of {len(calls)} experiments")
 
-        if not missing:
-            return measure(calls, folder, None, told)
+        told(0)
         warn(
             f"{len(missing)} of {len(calls)} experiments to measure: {MINUTES[args.quick]}; "
             "Ctrl-C keeps what is done"
@@ -113,7 +116,7 @@ def _measure(args: argparse.Namespace, calls: "list[Call]", folder: "Folder") ->
         try:
             with open_cluster(args.scheduler, args.jobs or processors()) as cluster:
                 warn(f"{cluster.workers()} workers; {cluster.dashboard()}")
-                results = measure(calls, folder, cluster, told)
+                results |= measure(missing, folder, cluster, told)
         except KeyboardInterrupt:
             raise InterruptedRunError(
                 f"interrupted; {args.out} has what is measured so far; to go on, run the same command again"

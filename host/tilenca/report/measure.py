@@ -83,6 +83,10 @@ class Folder:
             return None
         return result
 
+    def results(self, calls: Sequence[Call]) -> Results:
+        """Those that are there, by their keys."""
+        return {call.key: result for call in calls if (result := self.read(call)) is not None}
+
     def write(self, call: Call, result: dict[str, Any]) -> None:
         """Keeps the result of a call."""
         write_whole(self._file(call), json.dumps(result).encode(), "make room there, or give another --out")
@@ -99,30 +103,27 @@ def calls_of(experiments: Sequence[Experiment], quick: bool) -> list[Call]:
 
 
 def measure(
-    calls: Sequence[Call], folder: Folder, cluster: Cluster | None, tell: Callable[[int], None]
+    missing: Sequence[Call], folder: Folder, cluster: Cluster, tell: Callable[[int], None]
 ) -> Results:
-    """The results of all calls, by their keys; runs those that the folder lacks.
+    """Runs calls; returns their results, by their keys.
 
     Args:
-        calls: what to run.
+        missing: what the folder lacks.
         folder: where results are kept.
-        cluster: where to run; None: nothing is missing.
-        tell: called with the number of results that are there.
+        cluster: where to run.
+        tell: called with the number of results that have come.
 
     Raises:
         TilencaError: a command failed.
     """
-    results = {call.key: result for call in calls if (result := folder.read(call)) is not None}
-    missing = [call for call in calls if call.key not in results]
+    results: Results = {}
 
     def keep(call: Call, result: dict[str, Any]) -> None:
         folder.write(call, result)
         results[call.key] = result
         tell(len(results))
 
-    tell(len(results))
-    if cluster is not None and missing:
-        run_tasks(cluster, run_command, None, missing, keep)
+    run_tasks(cluster, run_command, None, missing, keep)
     return results
 
 
