@@ -1,9 +1,12 @@
 """Every experiment is a command that exists, and no two have one name."""
 
+from pathlib import Path
+
 import pytest
 
 from tilenca import cli
 from tilenca.report.experiments import EXPERIMENTS, TITLES, Experiment, chosen
+from tilenca.report.measure import Call, command_of
 from tilenca.report.rows import READERS
 
 
@@ -11,11 +14,11 @@ from tilenca.report.rows import READERS
     ("experiment", "quick"), [(one, quick) for quick in (False, True) for one in chosen(quick)]
 )
 def test_its_command_exists(experiment: Experiment, quick: bool) -> None:
-    words = [*experiment.arguments(quick)]
+    call = Call(experiment.key, experiment.arguments(quick))
+    words = [*command_of(call, Path("x"))]
     assert not [word for word in words if "{" in word]
     assert "--json" in words
-    more = ["--out", "x"] if words[0] == "sweep" else []
-    parsed = cli.build_parser(words[0]).parse_args([*words, *more])
+    parsed = cli.build_parser(words[0]).parse_args(words)
     assert parsed.seed > 0
     assert experiment.section in TITLES
     assert experiment.reader in READERS

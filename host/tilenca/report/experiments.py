@@ -69,17 +69,15 @@ def _evaluate(*words: str) -> Words:
 
 
 def _with_seed(*words: str) -> Words:
-    return (*words, "--runs", "{runs}", "--seed", f"{SEED}", "--json")
+    return (*words, "--runs", "{runs}", "--seed", f"{SEED}")
 
 
 def _emulate(*words: str) -> Words:
-    return ("emulate", *words, "--seed", f"{SEED}", "--json")
+    return ("emulate", *words, "--seed", f"{SEED}")
 
 
 def _sweep(axis: str, *words: str) -> Words:
-    return _with_seed(
-        "sweep", "--axis", axis, *words, "--model", "digits", "--shapes", "digits", "--jobs", "1"
-    )
+    return _with_seed("sweep", "--axis", axis, *words, "--model", "digits", "--shapes", "digits")
 
 
 EXPERIMENTS = (

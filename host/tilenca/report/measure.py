@@ -16,7 +16,7 @@ from tilenca.cluster.client import Cluster
 from tilenca.cluster.fingerprint import fingerprint
 from tilenca.cluster.tasks import run_tasks
 from tilenca.report.experiments import Experiment
-from tilenca.report.rows import READERS, Row
+from tilenca.report.rows import READERS, Row, Words
 
 Results = dict[str, dict[str, Any]]
 LAST_LINES = 5
@@ -30,6 +30,12 @@ class Call:
     arguments: tuple[str, ...]
 
 
+def command_of(call: Call, folder: Path) -> Words:
+    """What is run for a call: its arguments, and those that say where the result goes."""
+    alone = ("--jobs", "1", "--out", str(folder / "out")) if call.arguments[0] == "sweep" else ()
+    return (*call.arguments, *alone, "--json")
+
+
 def run_command(_shared: None, call: Call) -> dict[str, Any]:
     """Runs a command of tilenca in a process of its own, and returns its JSON.
 
@@ -37,9 +43,8 @@ def run_command(_shared: None, call: Call) -> dict[str, Any]:
         TilencaError: the command failed; the message has its last lines.
     """
     with tempfile.TemporaryDirectory() as folder:
-        out = ["--out", str(Path(folder) / "out")] if call.arguments[0] == "sweep" else []
         done = subprocess.run(
-            [sys.executable, "-m", "tilenca.cli", *call.arguments, *out],
+            [sys.executable, "-m", "tilenca.cli", *command_of(call, Path(folder))],
             capture_output=True,
             text=True,
             check=False,
@@ -131,9 +136,6 @@ def rows_of(experiments: Sequence[Experiment], quick: bool, results: Results) ->
     """The rows of each experiment, by its key."""
     rows = {}
     for experiment in experiments:
-        words = tuple(word for word in experiment.arguments(quick) if word != "--json")
-        words = tuple(word for n, word in enumerate(words) if "--jobs" not in words[max(0, n - 1) : n + 1])
-        rows[experiment.key] = READERS[experiment.reader](
-            experiment.key, experiment.what, results[experiment.key], words
-        )
+        result, words = results[experiment.key], experiment.arguments(quick)
+        rows[experiment.key] = READERS[experiment.reader](experiment.key, experiment.what, result, words)
     return rows
