@@ -226,3 +226,14 @@ def test_a_model_that_names_too_few_of_its_drawings_ends_training_with_1_and_is_
     assert train(two_shapes, tmp_path, "--iterations", "2", "--recipe", "brief") == 1
     assert "of the runs only: do not rely on this model" in capsys.readouterr().err
     assert (tmp_path / "model.json").exists()
+
+
+def test_a_training_that_begins_with_a_model_tells_so(two_shapes: Path, tmp_path: Path) -> None:
+    assert train(two_shapes, tmp_path / "one") == 0
+    words = ["--shapes", str(two_shapes), "--recipe", "smoke", "--seed", "6"]
+    second = tmp_path / "two"
+    assert cli.main(["train", *words, "--weights", str(tmp_path / "one"), "--out", str(second)]) == 0
+    one, two = load_model(tmp_path / "one"), load_model(second)
+    assert two.metadata["initial"] == f"{one.model_id:04X}"
+    assert two.dimensions == one.dimensions
+    assert f"--weights {tmp_path / 'one'}" in two.metadata["command"]

@@ -9,6 +9,7 @@ from tilenca.base.errors import UsageError
 from tilenca.commands import train
 from tilenca.commands.train_plan import announce, check_out, make_plan
 from tilenca.model import cost
+from tilenca.model.file import Dimensions
 
 
 def arguments(out: Path, *more: str) -> argparse.Namespace:
@@ -78,3 +79,22 @@ def test_classes_without_variants_are_refused_before_training(tmp_path: Path) ->
     args = arguments(tmp_path / "out", "--shapes", str(tmp_path / "mine.toml"), "--recipe", "forms")
     with pytest.raises(UsageError, match="no variant of '8' can be drawn; allow larger"):
         make_plan(args)
+
+
+def test_a_training_begins_with_the_weights_of_a_model(tmp_path: Path) -> None:
+    plan = make_plan(arguments(tmp_path, "--recipe", "forms", "--weights", "digits-hands"))
+    assert plan.initial is not None
+    assert plan.dimensions == plan.initial.dimensions == Dimensions(24, 96, 96)
+
+
+@pytest.mark.parametrize(
+    ("more", "wanted"),
+    [
+        (["--weights", "digits-hands", "--hidden", "40"], "--hidden 96, not 40"),
+        (["--weights", "digits-hands", "--state", "21"], "--state 24, not 21"),
+        (["--weights", "letters"], "of the same classes"),
+    ],
+)
+def test_weights_of_another_network_are_refused(tmp_path: Path, more: list[str], wanted: str) -> None:
+    with pytest.raises(UsageError, match=wanted):
+        make_plan(arguments(tmp_path, *more))

@@ -9,11 +9,11 @@ import torch
 
 from support.training import SMOKE, job_of, trainer
 from tilenca.base import paths
-from tilenca.base.errors import TilencaError
+from tilenca.base.errors import TilencaError, UsageError
 from tilenca.evaluation.metrics import TARGETS, Target
 from tilenca.training.runner import HOLDS_TO_END, make_trainer
 from tilenca.training.runner import train as train_one
-from tilenca.training.trainer import trained_at
+from tilenca.training.trainer import model_of, trained_at
 
 
 def test_another_seed_gives_another_model() -> None:
@@ -21,6 +21,21 @@ def test_another_seed_gives_another_model() -> None:
     for learner in (one, two):
         learner.step()
     assert not np.array_equal(one.net.arrays()["w3"], two.net.arrays()["w3"])
+
+
+def test_a_training_that_begins_with_weights_of_a_model_goes_on_from_them(tmp_path: Path) -> None:
+    first = trainer()
+    first.step()
+    model, _ = model_of(first.now(), {})
+    job = job_of([paths.DEFAULT_SHAPES], tmp_path)
+    job = replace(job, config=replace(job.config, initial=model))
+    second = make_trainer(job)
+    for name, weights in second.net.arrays().items():
+        assert np.array_equal(weights, model.floats[name])
+    assert job.config.as_json()["initial"] == f"{model.model_id:04X}"
+    second.save(job.checkpoint)
+    with pytest.raises(UsageError, match="another initial"):
+        trained_at(job.checkpoint, replace(job.config, initial=None))
 
 
 def test_training_ends_early_once_all_targets_held_several_times(

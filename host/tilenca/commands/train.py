@@ -15,6 +15,7 @@ from tilenca import __version__
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
+from tilenca.base.shipped import model_folder
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_scheduler_argument, add_shapes_argument, count, seed, whole
 from tilenca.commands.origin import without_a_dash
@@ -72,7 +73,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--state",
         type=whole(2, MAX_CHANNELS),
-        default=DEFAULT_CHANNELS,
         metavar="C",
         help=f"channels of the state (default {DEFAULT_CHANNELS})",
     )
@@ -81,6 +81,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=whole(1, MAX_WIDTH),
         metavar="H",
         help="width of both hidden layers (as the recipe says)",
+    )
+    parser.add_argument(
+        "--weights",
+        type=model_folder,
+        metavar="MODEL",
+        help="begin with the weights of this model, of the same classes and widths (random ones)",
     )
     parser.add_argument("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
     parser.add_argument(
@@ -140,7 +146,8 @@ def _train(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
     from tilenca.views.training import show_training
 
     configs = [
-        Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources) for n in plan.seeds
+        Config(plan.recipe, plan.dimensions, n, plan.task.labels, plan.task.sources, plan.initial)
+        for n in plan.seeds
     ]
     at_once = min(args.jobs or processors(), len(configs))
     threads = max(1, processors() // at_once) if args.scheduler is None else 1
@@ -248,9 +255,12 @@ def _command(args: argparse.Namespace, place: Callable[[Path], str] = place_of) 
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
     words += ["--seeds", str(args.seeds or recipe.seeds)]
     words += ["--iterations", str(args.iterations or recipe.iterations)]
-    words += ["--hidden", str(args.hidden or recipe.hidden)]
-    for option, default in (("state", 21), ("device", "cpu"), ("validation_runs", None)):
-        if (value := getattr(args, option)) != default:
+    if args.weights is None:
+        words += ["--hidden", str(args.hidden or recipe.hidden)]
+    else:
+        words += ["--weights", place(args.weights)]
+    for option, default in (("state", DEFAULT_CHANNELS), ("device", "cpu"), ("validation_runs", None)):
+        if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)
 

@@ -9,7 +9,14 @@ import numpy as np
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
 from tilenca.model import cost
-from tilenca.model.file import Dimensions, checkpoint_path, checkpoints
+from tilenca.model.file import (
+    DEFAULT_CHANNELS,
+    Dimensions,
+    Model,
+    checkpoint_path,
+    checkpoints,
+    load_model,
+)
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.derive import known_of
 from tilenca.shapes.file import UNKNOWN, load_task
@@ -32,6 +39,7 @@ class TrainingPlan:
         seeds: to train.
         validation_runs: of each drawing in the final measurement.
         varies: whether the first file has a table `[vary]` or `[forms]`.
+        initial: the model whose weights training begins with, if any.
     """
 
     task: Drawings
@@ -41,6 +49,7 @@ class TrainingPlan:
     seeds: tuple[int, ...]
     validation_runs: int
     varies: bool = False
+    initial: Model | None = None
 
 
 def make_plan(args: argparse.Namespace) -> TrainingPlan:
@@ -52,17 +61,39 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
     recipe = find_recipe(args.recipe)
     if args.iterations is not None:
         recipe = replace(recipe, iterations=args.iterations)
-    hidden = args.hidden or recipe.hidden
-    dimensions = Dimensions(args.state, hidden, hidden)
+    initial = None if args.weights is None else load_model(args.weights)
+    dimensions = _dimensions(args, recipe, initial)
     task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
     labels = labels_of(task, recipe, dimensions.max_classes)
+    if initial is not None and initial.labels != labels:
+        raise UsageError(
+            f"{args.weights}: its classes are {' '.join(initial.labels)}, those of this training are "
+            f"{' '.join(labels)}; begin with a model of the same classes, or without --weights"
+        )
     seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
     runs = args.validation_runs or recipe.validation_runs
     if recipe.varied:
         _check_variants(args.shapes[0], task)
     first = load_task(args.shapes[0])
     varies = bool(first.forms) or first.vary not in (None, Vary())
-    return TrainingPlan(replace(task, labels=labels), sizes, recipe, dimensions, seeds, runs, varies)
+    task = replace(task, labels=labels)
+    return TrainingPlan(task, sizes, recipe, dimensions, seeds, runs, varies, initial)
+
+
+def _dimensions(args: argparse.Namespace, recipe: Recipe, initial: Model | None) -> Dimensions:
+    """The widths that the arguments, the initial model or the recipe say.
+
+    Raises:
+        UsageError: the arguments and the initial model differ.
+    """
+    if initial is None:
+        hidden = args.hidden or recipe.hidden
+        return Dimensions(args.state or DEFAULT_CHANNELS, hidden, hidden)
+    theirs = initial.dimensions
+    for option, width in (("state", theirs.channels), ("hidden", theirs.hidden1)):
+        if (asked := getattr(args, option)) not in (None, width):
+            raise UsageError(f"{args.weights}: is made with --{option} {width}, not {asked}; leave it out")
+    return theirs
 
 
 def _check_variants(path: Path, task: Drawings) -> None:

@@ -34,13 +34,24 @@ HISTORY_ROWS, HISTORY_EVERY = 200, 100  # least number of rows, and most iterati
 
 @dataclass(frozen=True)
 class Config:
-    """Everything that decides the trained weights."""
+    """Everything that decides the trained weights.
+
+    Attributes:
+        recipe: how to train.
+        dimensions: the widths of the network.
+        seed: of all random numbers.
+        labels: the classes.
+        sources: the shape files and their checksums.
+        initial: the model whose real weights training begins with, of these widths and labels; None: random
+            ones.
+    """
 
     recipe: Recipe
     dimensions: Dimensions
     seed: int
     labels: tuple[str, ...]
     sources: tuple[dict[str, str], ...]
+    initial: Model | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Plain values, as JSON reads them back; without settings that do not touch the weights."""
@@ -52,6 +63,7 @@ class Config:
             "seed": self.seed,
             "labels": list(self.labels),
             "sources": list(self.sources),
+            "initial": None if self.initial is None else f"{self.initial.model_id:04X}",
         }
 
 
@@ -105,7 +117,9 @@ class Trainer:
         self.net = TileNet(
             config.dimensions,
             config.recipe.quantisation_aware,
-            initial_arrays(config.dimensions, self.random),
+            initial_arrays(config.dimensions, self.random)
+            if config.initial is None
+            else config.initial.floats,
         ).to(device)
         # The EMA becomes the model: a mean of the last thousand or so weights, far steadier than each.
         self.ema = {name: value.detach().clone() for name, value in self.net.named_parameters()}
