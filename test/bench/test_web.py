@@ -1,18 +1,13 @@
 """The bench of the web measures the same block everywhere, and sums what its processes have used."""
 
 import gzip
-import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
-from bench import native_block, web
+from bench import web
 from bench.chromium import processor_s
-from support.avr import build_target
-from tilenca.base import paths
 
 
 def test_sizes_are_those_of_the_files_and_of_each_gzipped(tmp_path: Path) -> None:
@@ -36,20 +31,3 @@ def test_the_processor_time_of_descendants_counts() -> None:
                 break
         assert processor_s(os.getpid()) - before_s >= 0.24
         child.communicate(b"\n")
-
-
-def test_the_native_block_runs_in_a_process_without_this_environments_tilenca(
-    firmware: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    build_target("tilenca_emulator")
-    monkeypatch.setattr(web, "FIRMWARE_ELF", firmware)
-    monkeypatch.setattr(web, "WARM_UP_S", 0.02)
-    monkeypatch.setattr(web, "MEASURED_S", 0.02)
-    measured = web.native(paths.ROOT / "host", translated=False)
-    assert 0 < measured["cpuS"] < 60
-    assert json.loads(json.dumps(native_block.main(str(firmware), web.case(False)))).keys() == measured.keys()
-
-
-def test_a_program_that_fails_is_named(tmp_path: Path) -> None:
-    with pytest.raises(RuntimeError, match="No module named"):
-        web.native(tmp_path, translated=False)

@@ -231,6 +231,23 @@ def test_threads_change_no_byte(avr: Compile, threads: int) -> None:
     assert sum(len(heard(tile)) for tile in one) > 400
 
 
+@pytest.mark.parametrize("threads", [2, 3])
+def test_a_breakpoint_ends_all_tiles_in_the_same_turn_on_any_number_of_threads(
+    avr: Compile, threads: int
+) -> None:
+    elf = avr(TALKER)
+    one, many = spoilt(elf, 1), spoilt(elf, threads)
+    for array in (one, many):
+        array.run(0.013)
+        array[5].set_breakpoint("main")
+        array[5].reset()
+        array.run(0.05)
+        assert array[5].halted
+    assert 0.013 < one.time_s < 0.063
+    assert many.time_s == one.time_s
+    assert many.save() == one.save()
+
+
 def test_a_hundred_tiles_run(avr: Compile) -> None:
     side = 10
     links = [(n, EAST, n + 1, WEST) for n in range(side * side) if n % side != side - 1]

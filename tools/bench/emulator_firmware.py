@@ -10,7 +10,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.reference import COMMIT, host_of_reference, native
 from tilenca.base.errors import BuildError
+from tilenca.base.paths import ROOT
 from tilenca.emulator import Array
 from tilenca.emulator.translator import make
 from tilenca.emulator.wiring import cables
@@ -19,6 +21,7 @@ from tilenca.shapes.file import Shape
 EIGHT = "####\n#..#\n####\n#..#\n####"
 SIZES = {1: (1, 1), 2: (1, 2), 5: (1, 5), 10: (2, 5), 20: (5, 4), 50: (5, 10), 100: (10, 10), 200: (10, 20)}
 PPM = 3000.0
+WORDS = {"eight": "sixteen tiles in an 8", "block": "twenty tiles in a block"}
 SECOND_CORE = 1.5  # cores that two threads must have had
 SWITCHED_ON_S = 0.2
 # Until all tiles run and agree; and what is measured then, of all tiles together.
@@ -69,6 +72,31 @@ class Case:
         return 1 / min(self.wall_s)
 
 
+class Against:
+    """This emulator and that of the reference on the same tiles, in turns, each in a process of its own."""
+
+    def __init__(self, elf: Path, grid: str, before: Path | None) -> None:
+        self._elf, self._before = elf, before
+        self._case = {"grid": grid, "warmUpS": WARM_UP_S, "measuredS": MEASURED_TILE_S / grid.count("#")}
+        self._ours_s: list[float] = []
+        self._theirs_s: list[float] = []
+
+    def measure(self) -> None:
+        """Runs both once more."""
+        if self._before is not None:
+            theirs = native(self._before, self._case | {"translated": False}, self._elf)
+            ours = native(ROOT / "host", self._case | {"translated": True}, self._elf)
+            self._theirs_s.append(theirs["cpuS"])
+            self._ours_s.append(ours["cpuS"])
+
+    def row(self, name: str) -> tuple[str, str, str]:
+        """The ratio of their best processor times."""
+        what = f"firmware, {WORDS[name]}, processor time at {COMMIT}"
+        if self._before is None:
+            return what, "not measured: this clone has no history", "3.5 times as much"
+        return what, f"{min(self._theirs_s) / min(self._ours_s):.2f} times as much", "3.5 times as much"
+
+
 def block(rows: int, columns: int) -> str:
     """The drawing of a full block."""
     return "\n".join(["#" * columns] * rows)
@@ -94,13 +122,20 @@ def measure(rounds: int, elf: Path, simavr: Path | None) -> list[tuple[str, str,
     fast = {"eight": Case(elf, EIGHT), "block": Case(elf, twenty)}
     two = {"eight": Case(elf, EIGHT, threads=2), "block": Case(elf, twenty, threads=2)}
     sized = {count: Case(elf, block(*size)) for count, size in SIZES.items()}
+    before = host_of_reference()
+    against = {name: Against(elf, grid, before) for name, grid in (("eight", EIGHT), ("block", twenty))}
     theirs = []
     for _ in range(rounds):
+        for pair in against.values():
+            pair.measure()
         for case in (*plain.values(), *starts, *fast.values(), *two.values(), *sized.values()):
             case.measure()
         if simavr is not None:
             theirs.append(simavr_s(simavr, elf))
-    return rows(plain, fast, two, starts, sized, theirs)
+    return [
+        *rows(plain, fast, two, starts, sized, theirs),
+        *(pair.row(name) for name, pair in against.items()),
+    ]
 
 
 def two_threads(one: Case, two: Case) -> str:
@@ -126,7 +161,7 @@ def rows(
         else "libsimavr is not installed"
     )
     found = [("firmware, one tile, one thread", f"{1 / one:.0f} times real time, {beside}", "")]
-    for name, words in (("eight", "sixteen tiles in an 8"), ("block", "twenty tiles in a block")):
+    for name, words in WORDS.items():
         cost, interpreted = fast[name].cost_s, plain[name].cost_s
         found.append(
             (

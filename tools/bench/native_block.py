@@ -1,11 +1,13 @@
-"""Prints how long a block of tiles takes on this machine's own emulator: native_block.py IMAGE CASE.
+"""Prints how long some tiles take on this machine's own emulator: native_block.py IMAGE CASE.
 
-The same block as web/bench/block.js runs. Uses only what every version of `tilenca.emulator` has.
+The same block as web/bench/block.js runs, or the tiles of `grid`, lines of `#` and `.`. Uses only what every
+version of `tilenca.emulator` has.
 """
 
 import json
 import sys
 import time
+from typing import Any
 
 from tilenca.emulator import Array
 
@@ -13,12 +15,14 @@ EAST, SOUTH, WEST, NORTH = 1, 2, 3, 0
 PPM, SWITCHED_ON_S = 3000.0, 0.2
 
 
-def main(image: str, case: dict[str, float]) -> dict[str, float]:
-    """Runs the block; {"cpuS", "wallS"} of what is measured."""
-    rows, columns = int(case["rows"]), int(case["columns"])
-    tiles = rows * columns
-    across = [(i, EAST, i + 1, WEST) for i in range(tiles) if i % columns != columns - 1]
-    down = [(i, SOUTH, i + columns, NORTH) for i in range(tiles - columns)]
+def main(image: str, case: dict[str, Any]) -> dict[str, float]:
+    """Runs the tiles; {"cpuS", "wallS"} of what is measured."""
+    grid = case.get("grid") or "\n".join(["#" * int(case["columns"])] * int(case["rows"]))
+    lines = [(row, line) for row, line in enumerate(grid.split("\n"))]
+    cells = [(row, column) for row, line in lines for column, sign in enumerate(line) if sign == "#"]
+    number, tiles = {cell: i for i, cell in enumerate(cells)}, len(cells)
+    across = [(i, EAST, number[r, c + 1], WEST) for (r, c), i in number.items() if (r, c + 1) in number]
+    down = [(i, SOUTH, number[r + 1, c], NORTH) for (r, c), i in number.items() if (r + 1, c) in number]
     ppm = [PPM * (i * 7 % tiles / (tiles / 2) - 1) for i in range(tiles)]
     switch_on_s = [SWITCHED_ON_S * (i * 3 % tiles) / tiles for i in range(tiles)]
     array = Array(image, tiles, across + down, ppm, switch_on_s)

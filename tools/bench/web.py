@@ -1,4 +1,4 @@
-"""The emulator in a browser, beside this machine's own: python -m bench.web [--against DIR] [--write FILE].
+"""The emulator in a browser, beside this machine's own: python -m bench.web [--write FILE].
 
 Twenty tiles of the real firmware in a block. All cases take turns, each in a process of its own; each figure
 is the best of a few rounds, in processor time, since other load changes that least.
@@ -7,9 +7,7 @@ is the best of a few rounds, in processor time, since other load changes that le
 import argparse
 import gzip
 import json
-import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +15,7 @@ from typing import Any
 
 from bench import chromium
 from bench.publish import publish
+from bench.reference import COMMIT, Measured, host_of_reference, native, told
 from tilenca.base.errors import BuildError
 from tilenca.base.paths import BUILD, FIRMWARE_ELF, ROOT
 from tilenca.emulator.translator import make
@@ -27,10 +26,8 @@ BEGIN, END = "<!-- web: made by `python -m bench.web`, do not edit -->", "<!-- /
 ROWS, COLUMNS = 5, 4
 # Browsers compile what runs much while it runs; the first second says more about that than about tiles.
 WARM_UP_S, MEASURED_S = 1.5, 3.0
-NATIVE = ROOT / "tools" / "bench" / "native_block.py"
 
 Case = dict[str, Any]
-Measured = dict[str, float]
 
 
 def case(translated: bool) -> Case:
@@ -39,43 +36,26 @@ def case(translated: bool) -> Case:
     return block | {"warmUpS": WARM_UP_S, "measuredS": MEASURED_S}
 
 
-def _told(command: list[str], env: dict[str, str] | None = None) -> Measured:
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
-    if done.returncode != 0:
-        raise RuntimeError(f"{command[0]}: {done.stderr.strip().splitlines()[-1:]}")
-    measured: Measured = json.loads(done.stdout)
-    return measured
-
-
-def native(host: Path, translated: bool) -> Measured:
-    """The emulator of a tree, whose packages are in `host`."""
-    packages = next(Path(sys.prefix).glob("lib/python3*/site-packages"))
-    # Without this environment's own tilenca, which would come first.
-    env = os.environ | {"PYTHONPATH": f"{host}:{packages}"}
-    command = [sys.executable, "-S", str(NATIVE), str(FIRMWARE_ELF), json.dumps(case(translated))]
-    return _told(command, env)
-
-
 def node(translated: bool) -> Measured:
     """The bundle under node."""
     script = ROOT / "web" / "bench" / "node.js"
-    return _told(["node", str(script), str(BUNDLE), json.dumps(case(translated))])
+    return told(["node", str(script), str(BUNDLE), json.dumps(case(translated))])
 
 
-def cases(against: Path | None) -> dict[str, Callable[[], Measured]]:
+def cases() -> dict[str, Callable[[], Measured]]:
     """What is measured, by its name."""
     host = ROOT / "host"
     found: dict[str, Callable[[], Measured]] = {
-        "native": lambda: native(host, True),
-        "native, interpreted": lambda: native(host, False),
+        "native": lambda: native(host, case(True)),
+        "native, interpreted": lambda: native(host, case(False)),
         "node": lambda: node(True),
         "node, interpreted": lambda: node(False),
     }
     if (browser := chromium.program()) is not None:
         found["Chromium"] = lambda: chromium.measure(browser, BUNDLE, case(True))
         found["Chromium, interpreted"] = lambda: chromium.measure(browser, BUNDLE, case(False))
-    if against is not None:
-        found[f"native, of {against.name}"] = lambda: native(against / "host", False)
+    if (before := host_of_reference()) is not None:
+        found[f"native at {COMMIT}, before blocks were translated"] = lambda: native(before, case(False))
     return found
 
 
@@ -86,9 +66,9 @@ def size(files: list[Path]) -> str:
     return f"{sum(map(len, contents)) / 1000:.0f} KB, gzipped {gzipped / 1000:.0f} KB"
 
 
-def measure(rounds: int, against: Path | None) -> list[tuple[str, str]]:
+def measure(rounds: int) -> list[tuple[str, str]]:
     """Name and figure; one row per figure."""
-    found = cases(against)
+    found = cases()
     best: dict[str, Measured] = {}
     for _ in range(rounds):
         for name, run in found.items():
@@ -115,7 +95,6 @@ def main() -> int:
     """Prints the table, and writes it if asked to."""
     parser = argparse.ArgumentParser(description="How fast the emulator is in a browser.")
     parser.add_argument("--write", type=Path, metavar="F", help="put the table into this document")
-    parser.add_argument("--against", type=Path, metavar="DIR", help="the tree of another version, built")
     parser.add_argument(
         "--rounds", type=int, default=5, help="take the best of so many (default: %(default)s)"
     )
@@ -127,7 +106,7 @@ def main() -> int:
         return 0
     try:
         make(FIRMWARE_ELF)
-        rows = measure(args.rounds, args.against)
+        rows = measure(args.rounds)
     except (BuildError, RuntimeError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1

@@ -7,7 +7,7 @@ namespace tilenca {
 
 namespace {
 
-constexpr double kTurnsAlone = 64;
+constexpr double kMostTurns = 64;
 
 } // namespace
 
@@ -28,6 +28,7 @@ Array::Array(const Image& image, const avr::Fuses& fuses, const std::vector<Cloc
 unsigned Array::add_tile(const Clock& clock) {
     tiles_.push_back(std::make_unique<Tile>(program_, fuses_, clock, data_end_));
     tiles_.back()->set_hardware(hardware_of(size() - 1));
+    tiles_.back()->use_list(list_);
     for (const Block& block : image_.eeprom) {
         std::copy(block.bytes.begin(), block.bytes.end(),
                   tiles_.back()->chip().eeprom().memory().begin() + block.address);
@@ -45,9 +46,11 @@ void Array::connect(End from, End to) {
 void Array::rebuild_order() {
     into_.assign(tiles_.size(), {});
     out_of_.assign(tiles_.size(), {});
-    for (const auto& wire : wires_) {
+    neighbours_.assign(tiles_.size(), {});
+    for (const auto& wire : wires_) { // a cable has one in each direction
         into_[wire->to().tile].push_back(wire.get());
         out_of_[wire->from().tile].push_back(wire.get());
+        neighbours_[wire->to().tile].push_back(wire->from().tile);
     }
 }
 
@@ -152,8 +155,8 @@ bool Array::set_cable_delay(double ticks) {
 // The time until which every tile sleeps; the present if one does not.
 double Array::idle_until() {
     double soonest = HUGE_VAL;
-    for (const double until : sleeps_until_) {
-        soonest = std::min(soonest, std::max(now_, until));
+    for (const Rest& rest : sleeps_until_) {
+        soonest = std::min(soonest, std::max(now_, rest.until));
         if (soonest <= now_) {
             return soonest;
         }
@@ -169,28 +172,37 @@ void Array::run_tile_until(unsigned index, double end, double its_turn_end) {
     for (Wire* wire : into_[index]) {
         has_mail = wire->deliver() || has_mail;
     }
-    if (has_mail || sleeps_until_[index] < end) {
+    if (has_mail || sleeps_until_[index].until < end) {
         Tile& tile = *tiles_[index];
         tile.run_until(end, its_turn_end);
-        sleeps_until_[index] = tile.wakes_at();
+        sleeps_until_[index].until = tile.wakes_at();
         if (tile.clock().drifts()) { // it tells the time of waking until its next step only
             const double step = (std::floor(end / kDriftTicks) + 1) * kDriftTicks;
-            sleeps_until_[index] = std::min(sleeps_until_[index], step);
+            sleeps_until_[index].until = std::min(sleeps_until_[index].until, step);
         }
     }
+    if (has_faults_) {
+        pass_faults_on(index, end, its_turn_end);
+    }
+}
+
+void Array::pass_faults_on(unsigned index, double end, double its_turn_end) {
     for (Wire* wire : out_of_[index]) {
         if (wire->has_fault()) {
             wire->settle(end);
         }
     }
+    for (Wire* wire : into_[index]) {
+        if (wire->has_fault()) {
+            wire->note_receiver(end == its_turn_end);
+        }
+    }
 }
 
-void Array::run_tile(unsigned index) {
-    for (double end = turn_begin_; end < now_;) {
-        const double its_turn_end = turn_end(end);
-        end = std::min(now_, its_turn_end);
-        run_tile_until(index, end, its_turn_end);
-    }
+void Array::run_tile(unsigned index, unsigned turn) {
+    const double its_turn_end = first_end_ + turn * turn_;
+    tiles_[index]->use_list(list_ ^ ((turn + 1) & 1));
+    run_tile_until(index, std::min(now_, its_turn_end), its_turn_end);
 }
 
 // Every tile is brought to the present; from here on anything may be done to it.
@@ -198,18 +210,27 @@ void Array::catch_up() {
     for (auto& tile : tiles_) {
         tile->run_until(now_, turn_end(now_ - 1));
     }
-    sleeps_until_.assign(tiles_.size(), 0);
+    sleeps_until_.assign(tiles_.size(), {});
 }
 
-void Array::run_turn() {
-    common_.writing = 1 - common_.writing;
-    if (workers_ != nullptr) {
-        workers_->share(size());
-        return;
+void Array::run_turns(unsigned turns) {
+    if (wave_ != nullptr) {
+        wave_->run(neighbours_, turns);
+    } else {
+        for (unsigned i = 0; i < size(); i++) {
+            for (unsigned turn = 0; turn < turns; turn++) {
+                run_tile(i, turn);
+            }
+        }
     }
-    for (unsigned i = 0; i < size(); i++) {
-        run_tile(i);
-    }
+    list_ ^= turns & 1;
+}
+
+// One, where a turn may be the last, or where all tiles will sleep again after it. On one thread, tiles that
+// have neighbours need what these sent in the turn before.
+double Array::turns_at_once(double begin) const {
+    const bool at_once = wires_.empty() || (wave_ != nullptr && begin <= now_);
+    return at_once && !may_halt() ? kMostTurns : 1;
 }
 
 bool Array::has_halted() const {
@@ -217,27 +238,34 @@ bool Array::has_halted() const {
                        [](const auto& tile) { return tile->chip().cpu().halted; });
 }
 
+bool Array::may_halt() const {
+    return std::any_of(tiles_.begin(), tiles_.end(),
+                       [](const auto& tile) { return tile->chip().may_halt(); });
+}
+
 void Array::run_for(double ticks) {
     asked_for_ += ticks;
     const double end = std::ceil(asked_for_ / kQuantumTicks) * kQuantumTicks;
     catch_up(); // one that was halted has to
+    has_faults_ =
+        std::any_of(wires_.begin(), wires_.end(), [](const auto& wire) { return wire->has_fault(); });
     while (now_ < end && !has_halted()) {
-        turn_begin_ = std::min(end - kQuantumTicks, std::floor(idle_until() / kQuantumTicks) * kQuantumTicks);
-        // Tiles that nothing joins can take many turns at once.
-        const double more = wires_.empty() ? kTurnsAlone * turn_ : 0;
-        now_ = std::min(end, turn_end(turn_begin_) + more);
-        run_turn();
+        const double begin = std::floor(idle_until() / kQuantumTicks) * kQuantumTicks;
+        const double most = turns_at_once(begin);
+        first_end_ = turn_end(std::min(end - kQuantumTicks, begin));
+        now_ = std::min(end, first_end_ + (most - 1) * turn_);
+        run_turns(1 + static_cast<unsigned>(std::ceil(std::max(0.0, now_ - first_end_) / turn_)));
     }
     catch_up();
     asked_for_ = now_ < end ? now_ : asked_for_;
-    if (workers_ != nullptr) {
-        workers_->rest();
+    if (wave_ != nullptr) {
+        wave_->rest();
     }
 }
 
 void Array::set_threads(unsigned threads) {
-    const auto work = [this](unsigned i) { run_tile(i); };
-    workers_ = threads > 1 ? std::make_unique<Workers>(threads, work) : nullptr;
+    const auto run_turn = [this](unsigned tile, unsigned turn) { run_tile(tile, turn); };
+    wave_ = threads > 1 ? std::make_unique<Wave>(threads, run_turn) : nullptr;
 }
 
 std::string Array::fault(unsigned index) {

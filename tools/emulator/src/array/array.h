@@ -1,10 +1,10 @@
 // Many tiles, wired, in step: each runs a turn, then the next; what one sends reaches another only after a
 // delay longer than a turn. So nobody can receive what has not been sent yet, and the outcome
-// does not depend on the order in which the tiles run, nor on how many threads they share.
+// does not depend on the order in which the tiles run, nor on how many threads they share (see wave.h).
 #pragma once
 
+#include "array/wave.h"
 #include "array/wire.h"
-#include "array/workers.h"
 #include "image/image.h"
 #include "tile/tile.h"
 
@@ -75,12 +75,16 @@ class Array {
   private:
     // As long as can be. The delay's margin covers the last instruction of a turn.
     static double turn_of(double delay) { return std::floor((delay - 64) / kQuantumTicks) * kQuantumTicks; }
-    void run_turn();
+    // How many turns tiles may take from there on, before all have to be looked at.
+    double turns_at_once(double begin) const;
+    void run_turns(unsigned turns);
     // The end of the turn that a moment lies in.
     double turn_end(double ticks) const { return (std::floor(ticks / turn_) + 1) * turn_; }
-    void run_tile(unsigned index);
+    void run_tile(unsigned index, unsigned turn);
     void run_tile_until(unsigned index, double end, double turn_end);
+    void pass_faults_on(unsigned index, double end, double turn_end);
     void catch_up();
+    bool may_halt() const;
     void connect(End from, End to);
     void rebuild_order();
     avr::Hardware hardware_of(unsigned index) const;
@@ -94,14 +98,20 @@ class Array {
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::vector<std::unique_ptr<Wire>> wires_;
     std::vector<std::vector<Wire*>> into_, out_of_; // each tile's wires
+    std::vector<std::vector<unsigned>> neighbours_; // each tile's
     // Until when each tile sleeps, unless something comes in: it need not run, and may lag behind, before.
-    std::vector<double> sleeps_until_;
-    std::unique_ptr<Workers> workers_;
+    struct alignas(64) Rest { // so that threads do not write to one cache line in turns
+        double until = 0;
+    };
+    std::vector<Rest> sleeps_until_;
+    std::unique_ptr<Wave> wave_; // null: one thread
     Wire::Common common_{kUsualDelayTicks};
     avr::Hardware hardware_;
     double now_ = 0;
     double turn_ = turn_of(kUsualDelayTicks);
-    double turn_begin_ = 0; // of the time under way, which ends now
+    double first_end_ = 0;    // of the first turn under way; the last one ends now
+    bool has_faults_ = false; // any of the wires, while time runs
+    unsigned list_ = 0;       // of their wires' two that tiles wrote last
     double asked_for_ = 0;
 };
 

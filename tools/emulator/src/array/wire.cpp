@@ -75,6 +75,7 @@ void Wire::set_fault(const WireFault& fault, uint64_t seed) {
     }
     fault_ = fault;
     random_ = avr::Random(seed);
+    others_bit_[0] = others_bit_[1] = to_.bit_ticks(to_pin_);
     if (!fault.harms()) {
         for (const Edge& edge : raw_) {
             put(edge.ticks + common_.delay + fault.delay, edge.drive);
@@ -87,7 +88,7 @@ double Wire::bit_ticks() {
     if (fault_.baud > 0) {
         return kTicksPerSecond / fault_.baud;
     }
-    const double own = from_.bit_ticks(from_pin_), others = to_.bit_ticks(to_pin_);
+    const double own = from_.bit_ticks(from_pin_), others = others_bit_[1 - from_.list()];
     return own > 0 ? own : (others > 0 ? others : kTicksPerSecond / kUnknownBaud);
 }
 
@@ -153,7 +154,7 @@ void Wire::settle(double end) {
 }
 
 double Wire::pending() const {
-    if (!sent_[common_.writing].empty()) {
+    if (!sent_[from_.list()].edges.empty()) {
         return 0;
     }
     const double border = border_ == kNoByte ? HUGE_VAL : start_ + bit_ * border_;
@@ -161,7 +162,7 @@ double Wire::pending() const {
 }
 
 bool Wire::hand_over() {
-    std::vector<Edge>& edges = sent_[1 - common_.writing];
+    std::vector<Edge>& edges = sent_[1 - to_.list()].edges;
     for (const Edge& edge : edges) {
         to_.chip().push_edge(to_pin_, to_.clock().to_cycle(edge.ticks), edge.drive);
     }
@@ -171,9 +172,10 @@ bool Wire::hand_over() {
 
 void Wire::state(avr::Archive& archive) {
     std::vector<Edge> raw(raw_.begin(), raw_.end());
-    archive(sent_[common_.writing], sent_[1 - common_.writing], connected_, fault_.loss, fault_.flip,
-            fault_.delay, fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_drive_,
-            out_drive_, muted_, flipping_, flips_, start_, bit_, border_);
+    const unsigned list = from_.list(); // between turns all tiles have the same
+    archive(sent_[list].edges, sent_[1 - list].edges, connected_, fault_.loss, fault_.flip, fault_.delay,
+            fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_drive_, out_drive_,
+            muted_, flipping_, flips_, start_, bit_, border_, others_bit_[list], others_bit_[1 - list]);
     raw_.assign(raw.begin(), raw.end());
 }
 

@@ -34,7 +34,6 @@ class Wire : public avr::EdgeListener {
     // What the wires of an array have in common.
     struct Common {
         double delay = 0;                        // ticks that everything takes
-        unsigned writing = 0;                    // which of a wire's two lists this turn writes
         avr::Drive unpowered = avr::Drive::High; // what a tile without power does to its neighbours
     };
 
@@ -56,7 +55,11 @@ class Wire : public avr::EdgeListener {
     // Of the sender's turn: all before `end` is certain.
     void settle(double end);
     // Of the receiver's turn: hands over what was sent before this turn; false: nothing was.
-    bool deliver() { return !sent_[1 - common_.writing].empty() && hand_over(); }
+    bool deliver() { return !sent_[1 - to_.list()].edges.empty() && hand_over(); }
+    // The end of the receiver's turn, or of a piece of it.
+    void note_receiver(bool turn_ends) {
+        others_bit_[to_.list()] = turn_ends ? to_.bit_ticks(to_pin_) : others_bit_[1 - to_.list()];
+    }
     // When it next has to be looked at, in ticks: at once, if something waits to be delivered.
     double pending() const;
     bool has_fault() const { return fault_.harms(); }
@@ -69,11 +72,16 @@ class Wire : public avr::EdgeListener {
         void state(avr::Archive& archive) { archive(ticks, drive); }
     };
 
+    // Two threads use them at the same time, so each has a cache line of its own.
+    struct alignas(64) List {
+        std::vector<Edge> edges;
+    };
+
     bool hand_over();
     void start_byte(double ticks);
     void pass_borders(double until);
     void send(double ticks);
-    void put(double ticks, avr::Drive drive) { sent_[common_.writing].push_back({ticks, drive}); }
+    void put(double ticks, avr::Drive drive) { sent_[from_.list()].edges.push_back({ticks, drive}); }
     void drive_anew(double now);
     double bit_ticks();
 
@@ -81,7 +89,7 @@ class Wire : public avr::EdgeListener {
     End from_end_, to_end_;
     avr::PinId from_pin_, to_pin_;
     const Common& common_;
-    std::vector<Edge> sent_[2];
+    List sent_[2]; // which one a tile writes, and which it reads, changes every turn
     bool connected_ = true;
 
     WireFault fault_;
@@ -92,6 +100,8 @@ class Wire : public avr::EdgeListener {
     bool muted_ = false, flipping_ = false;
     uint8_t flips_ = 0;
     double start_ = 0, bit_ = 0;
+    // A bit of the receiving USART, by the receiver's list: the sender reads what it was a turn ago.
+    double others_bit_[2] = {0, 0};
     unsigned border_ = kNoByte; // the next bit border of the byte under way
     static constexpr unsigned kNoByte = 0, kLastBorder = 10;
 };

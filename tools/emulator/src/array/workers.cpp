@@ -1,25 +1,11 @@
 #include "array/workers.h"
 
+#include "array/spin.h"
+
 #include <chrono>
 #include <utility>
 
 namespace tilenca {
-
-namespace {
-
-constexpr int kSpins = 2000;
-// So long a thread waits for another one's part before it helps out: longer than a quantum takes, since tiles
-// that change their thread have to change caches, too.
-constexpr int kPatience = 400;
-
-// Leaves the other thread of the same core more of it.
-void relax() {
-#if defined(__x86_64__)
-    __builtin_ia32_pause();
-#endif
-}
-
-} // namespace
 
 Workers::Workers(unsigned threads, std::function<void(unsigned)> work)
     : threads_(threads), work_(std::move(work)), parts_(new Part[threads]), is_manned_(threads, 1) {

@@ -4,15 +4,20 @@ namespace tilenca::avr {
 
 namespace {
 
+// Machines convert to signed numbers only.
+uint64_t whole(double cycles) {
+    return static_cast<uint64_t>(static_cast<int64_t>(cycles));
+}
+
 // The bits must be asked for in order.
 bool majority(Line::Levels& line, const Sampling& sampling, unsigned bit) {
     const double last = sampling.decided(bit);
-    const bool first = line.at(static_cast<uint64_t>(last - 2 * sampling.period));
-    const auto end = static_cast<uint64_t>(last);
+    const bool first = line.at(whole(last - 2 * sampling.period));
+    const uint64_t end = whole(last);
     if (line.stays_until(end)) {
         return first;
     }
-    const bool second = line.at(static_cast<uint64_t>(last - sampling.period)), third = line.at(end);
+    const bool second = line.at(whole(last - sampling.period)), third = line.at(end);
     return first + second + third >= 2;
 }
 

@@ -60,6 +60,10 @@ class Tile {
     // How long a bit takes, in ticks, on a pin that belongs to a USART that is on; 0 otherwise.
     double bit_ticks(avr::PinId pin);
 
+    // Which of a wire's two lists it writes in its turn; it reads the other one.
+    unsigned list() const { return list_; }
+    void use_list(unsigned list) { list_ = list; }
+
     static avr::PinId receive_pin(unsigned side);
     static avr::PinId transmit_pin(unsigned side);
     void state(avr::Archive& archive);
@@ -76,6 +80,7 @@ class Tile {
     avr::Chip chip_;
     HostPort host_;
     DataEnd data_end_;
+    unsigned list_ = 0;
     bool powered_ = true;
     uint64_t cycles_off_ = 0;
     uint64_t seen_changes_ = ~uint64_t{0};
