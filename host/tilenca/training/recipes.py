@@ -32,7 +32,6 @@ class Recipe:
         staggered_start: share of the samples that start anew in which tiles are switched on one after the
             other; their first results do not count, but later ones must be right.
         switch: share of the perturbed samples that are rebuilt into another drawing while running.
-        settled: share of those that were undisturbed for long before: they must let go of an old answer.
         state_shuffle: share of the perturbed samples whose tiles get states of any other tiles; the network
             learns to recover from arbitrary states.
         away: share of the perturbed samples in which a tile or two are off for once; the results of the other
@@ -92,7 +91,6 @@ class Recipe:
     reset: float = 0.0
     staggered_start: float = 0.0
     switch: float = 0.0
-    settled: float = 0.0
     state_shuffle: float = 0.0
     away: float = 0.0
     undisturbed_pool: int = 0
@@ -178,20 +176,18 @@ RECIPES: dict[str, Recipe] = {
         FULL,
         iterations=66_000,
         batch=36,
-        switch=0.35,
-        settled=0.5,
         undisturbed_pool=384,
         undisturbed_batch=14,
         stretched=0.12,
-        varied=0.3,
-        damaged=0.19,
+        varied=0.33,
+        damaged=0.15,
         unknown=0.22,
         unlabelled=0.04,
         ramp=(0.02, 0.15),
         loss_limit=1.0,
         failure_weighting=0.3,
         refresh_every=250,
-        mine_every=600,
+        mine_every=1000,
         trials=200,
         check_every=0,
     ),
