@@ -11,7 +11,7 @@ from tilenca import cli
 from tilenca.base import paths
 from tilenca.report import experiments
 
-SOME = ("paper.digits.listing.10", "paper.curve.7", "gap.fast", "gap.tiles", "edges.dead")
+SOME = ("paper.digits.listing.10", "paper.curve.7", "gap.fast.60", "gap.tiles.60", "edges.dead")
 
 
 @pytest.fixture
@@ -34,6 +34,7 @@ def test_a_report_is_measured_once_and_each_number_repeats(
     assert json.loads((out / "report.json").read_text())["rows"] == result["rows"]
     page = (out / "report.html").read_text()
     assert page.count("<svg") == 2
+    assert "The field" in page
     assert {row["key"].split(".")[0] for row in result["rows"]} == {"paper", "edges", "gap"}
     for row in result["rows"]:
         assert row.keys() >= {"key", "value", "low", "high", "runs", "command"}

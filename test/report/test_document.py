@@ -23,14 +23,14 @@ EXPERIMENTS = [
         "edges.loss", EDGES, "messages lost", (), "sweep", (1, 1), figure="messages lost", axis="share"
     ),
     Experiment("paper.curve", PAPER, "'4'", (), "curve", (1, 1), figure="update by update", axis="updates"),
-    Experiment("gap.fast", GAP, "fast", (), "evaluation", (1, 1)),
-    Experiment("gap.tiles", GAP, "<tiles>", (), "evaluation", (1, 1)),
+    Experiment("gap.fast.60", GAP, "fast", (), "evaluation", (1, 1)),
+    Experiment("gap.tiles.60", GAP, "<tiles>", (), "evaluation", (1, 1)),
 ]
 ROWS = {
     "edges.loss": [replace(ROW, across=0.2, line="size 5x4"), replace(ROW, across=0.1, line="size 5x4")],
     "paper.curve": [replace(ROW, key="curve", what="a curve", across=1, line="'4'")],
-    "gap.fast": [replace(ROW, key="gap.fast.right", value=1.0)],
-    "gap.tiles": [replace(ROW, key="gap.tiles.right", what="<tiles>", value=0.98, target=0.99)],
+    "gap.fast.60": [replace(ROW, key="gap.fast.60.right", value=1.0)],
+    "gap.tiles.60": [replace(ROW, key="gap.tiles.60.right", what="<tiles>", value=0.98, target=0.99)],
 }
 
 

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import jinja2
+import markupsafe
 
-from tilenca.report.experiments import INTRODUCTIONS, TITLES, Experiment
+from tilenca.report.experiments import CONVERGED, INTRODUCTIONS, TITLES, Experiment
+from tilenca.report.field import field_of
 from tilenca.report.rows import SHARE, Row
 
 POINTS = 100.0
@@ -73,9 +75,11 @@ def figures_of(experiments: Sequence[Experiment], rows: Mapping[str, Sequence[Ro
 
 
 def gap_of(rows: Mapping[str, Sequence[Row]]) -> float | None:
-    """By how many points all tiles right differs between simulator and emulated tiles."""
-    fast, tiles = (rows[key][0].value for key in ("gap.fast", "gap.tiles"))
-    return None if fast is None or tiles is None else abs(fast - tiles) * POINTS
+    """By how many points all tiles right differs at most between simulator and emulated tiles that agree."""
+    of_tiles = [key for key in rows if key.startswith(f"gap.tiles.{CONVERGED}")]
+    pairs = [(rows[key][0].value, rows[key.replace(".tiles.", ".fast.")][0].value) for key in of_tiles]
+    differences = [abs(one - other) for one, other in pairs if one is not None and other is not None]
+    return max(differences) * POINTS if differences else None
 
 
 def sections_of(
@@ -118,6 +122,15 @@ def verdict(row: Row) -> str:
     return "held" if row.value >= row.target else "missed"
 
 
+def bold(text: str) -> markupsafe.Markup:
+    """HTML of a text with **bold** parts; everything else in it is text."""
+    parts = [markupsafe.escape(part) for part in text.split("**")]
+    return markupsafe.Markup("").join(
+        markupsafe.Markup("<strong>{}</strong>").format(part) if number % 2 else part
+        for number, part in enumerate(parts)
+    )
+
+
 def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], gap: float | None) -> str:
     """A document.
 
@@ -135,5 +148,7 @@ def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], g
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"value": value_text, "interval": interval_text, "verdict": verdict}
-    return environment.get_template(template).render(facts=facts, sections=sections, gap=gap)
+    environment.filters |= {"value": value_text, "interval": interval_text, "verdict": verdict, "bold": bold}
+    values = {row.key: value_text(row) for section in sections for row in section["rows"]}
+    field = field_of(values)
+    return environment.get_template(template).render(facts=facts, sections=sections, gap=gap, field=field)

@@ -69,9 +69,11 @@ def read_evaluation(key: str, what: str, result: dict[str, Any], words: Words) -
 def read_suite(key: str, what: str, result: dict[str, Any], words: Words) -> list[Row]:
     """The rows of `tilenca evaluate --suite`, each with the command for just that one."""
     del what  # every row has words of its own
+    chosen = {number + plus for number, word in enumerate(words) if word == "--row" for plus in (0, 1)}
+    all_rows = [word for number, word in enumerate(words) if number not in chosen]
     rows = []
     for row in result["metrics"]["rows"]:
-        alone = shlex.join(("tilenca", *words, "--row", f"={row['name']}"))
+        alone = shlex.join(("tilenca", *all_rows, "--row", f"={row['name']}"))
         rows.append(
             Row(
                 f"{key}.{slug(row['name'])}@{row['steps']}",
