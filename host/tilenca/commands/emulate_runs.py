@@ -5,7 +5,7 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -104,11 +104,25 @@ def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]
 
 
 def run_all(
-    args: argparse.Namespace, task: Task, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+    args: argparse.Namespace,
+    task: Task,
+    lay_out: LayOut,
+    shapes: Sequence[Shape],
+    record: Recorder | None,
+    shown: Callable[[], AbstractContextManager[Tell]] | None = None,
 ) -> list[EmulationResult]:
-    """Runs shapes side by side, as fast as they go; results come in the order of the shapes."""
+    """Runs shapes side by side, as fast as they go; results come in the order of the shapes.
+
+    Args:
+        args: the command line.
+        task: that the shapes are of.
+        lay_out: makes the tiles of a shape.
+        shapes: to run.
+        record: gets what the tiles say.
+        shown: shows how far the shapes are; None: bars, and a line about each shape.
+    """
     results = []
-    with show_progress() as tell:
+    with (shown or show_progress)() as tell:
 
         def run(shape: Shape, stopped: threading.Event) -> tuple[EmulationResult, list[str]]:
             return _run_one(args, task, lay_out, shape, tell, stopped)
@@ -117,7 +131,8 @@ def run_all(
             results.append(result)
             emulated_s, wall_s = result.report["simulated_s"], result.report["wall_s"]
             speed = emulated_s / max(wall_s, 0.001)
-            warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
+            if shown is None:
+                warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
             if record is not None:
                 record.write(lines)
     return results

@@ -15,13 +15,14 @@ PARTS = ("include", "src")
 RENDERED = "model"  # the folder of both parts that `render` fills
 
 
-def build_beside(model: Model, folder: Path, force: bool = False) -> Path:
+def build_beside(model: Model, folder: Path, force: bool = False, quiet: bool = False) -> Path:
     """Builds a model's firmware in its folder; returns the image. What is up to date is not built again.
 
     Args:
         model: to build in.
         folder: of the model.
         force: overwrite rendered files that were edited by hand.
+        quiet: do not say that it builds.
 
     Raises:
         BuildError: the model does not fit, there is no project, or the build failed.
@@ -33,7 +34,7 @@ def build_beside(model: Model, folder: Path, force: bool = False) -> Path:
     except OSError as error:
         raise BuildError(f"{error.filename or out}: {error.strerror}; make {folder} writable") from error
     write_files(out, render(model), force)
-    build(out)
+    build(out, quiet)
     return paths.model_elf(folder)
 
 
