@@ -38,6 +38,7 @@ ENDING = (signal.SIGINT, *SIGNALS)
 SAVING = (
     "keeps a checkpoint once this iteration, or a measurement after it, is done; Ctrl-C again ends without"
 )
+WITHOUT = "ends without another checkpoint, as soon as the step at work is done"
 
 
 @dataclass(frozen=True)
@@ -287,7 +288,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:
-        with promising(SAVING):
+        with promising(SAVING, WITHOUT):
             yield lambda: bool(caught)
     finally:
         for number, handler in before.items():
