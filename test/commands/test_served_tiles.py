@@ -3,6 +3,7 @@
 import json
 import os
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from support.alone import alone
 from support.intel_hex import image
 from tilenca.base import paths
 
@@ -105,3 +107,20 @@ def test_tiles_are_programmed_side_by_side_and_run_what_was_written(
         if not missing:
             break
     assert set(first.values()) == {"HELLO"}, "the ports' opening has reset them"
+
+
+def test_a_models_own_firmware_is_built_and_written_and_the_projects_stays(
+    served: str, firmware: Path, tmp_path: Path
+) -> None:
+    model, before = tmp_path / "hex", {p: p.read_bytes() for p in paths.FIRMWARE.rglob("*") if p.is_file()}
+    shutil.copytree(paths.MODELS / "hex", model)
+    model_id = json.loads((model / "model.json").read_text(encoding="utf-8"))["model_id"]
+    for result in ("flashed", "skipped"):
+        with alone("platformio"):
+            done = tilenca("flash", "--json", "--model", str(model), "--port", served)
+        assert done.returncode == 0, done.stderr
+        assert [tile["result"] for tile in json.loads(done.stdout)["tiles"]] == [result] * 3
+    hello = next(sentence for sentence in monitored(served) if sentence["type"] == "HELLO")
+    assert hello["fields"]["model_id"] == model_id
+    assert {p: p.read_bytes() for p in paths.FIRMWARE.rglob("*") if p.is_file()} == before
+    flash(served, firmware.with_suffix(".hex"))  # as the other tests expect them

@@ -23,7 +23,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     ),
     "page": ("tilenca page", "tilenca page --shapes my-shapes.toml --no-open"),
     "devices": ("tilenca devices", "tilenca devices --port '/dev/ttyACM*' --json"),
-    "flash": ("tilenca flash", "tilenca flash --only 7 --force"),
+    "flash": ("tilenca flash --model models/mine", "tilenca flash --only 7 --force"),
     "set": ("tilenca set brightness 40", "tilenca set period 40 --tile 7"),
     "monitor": ("tilenca monitor --record evening.jsonl", "tilenca monitor --replay evening.jsonl --speed 4"),
 }
