@@ -25,6 +25,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "make": ("tilenca.commands.make", "from drawings to tiles: check, train, build and emulate"),
     "shapes": ("tilenca.commands.shapes", "draw and check a shape file, and what its classes may become"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
+    "runs": ("tilenca.commands.runs", "list the trainings in a folder, and draw them over each other"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
     "sweep": ("tilenca.commands.sweep", "measure over every combination of conditions, on many cores"),
     "report": ("tilenca.commands.report", "measure every claim again, as a page with figures"),

@@ -8,6 +8,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
         "tilenca train --shapes my-shapes.toml --out models/mine --recipe quick",
         "tilenca train --shapes my-shapes.toml --out models/mine --seeds 2 --resume",
     ),
+    "runs": ("tilenca runs", "tilenca runs models build/models --plot runs.png"),
     "evaluate": ("tilenca evaluate --model models/mine", "tilenca evaluate --size 9x7 --loss 0.2"),
     "sweep": (
         "tilenca sweep --axis loss=0:0.6:0.1 --runs 20 --out build/loss",

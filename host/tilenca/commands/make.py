@@ -30,6 +30,7 @@ from tilenca.commands.train_steps import at_once, jobs_of, train_model
 from tilenca.model import cost
 from tilenca.model.file import Model, checkpoint_path, checkpoints, load_model
 from tilenca.training.device import check_device
+from tilenca.training.tensorboard import check_tensorboard
 from tilenca.views.abilities import abilities
 from tilenca.views.progress import Tell
 from tilenca.views.steps import Steps, show_steps
@@ -64,6 +65,8 @@ def run(args: argparse.Namespace) -> int:
     _refuse_shipped(args.out)
     plan = make_plan(args)
     check_device(args.device)
+    if args.tensorboard:
+        check_tensorboard()
     fits = cost.check(plan.dimensions, len(plan.task.labels))
     done = _is_trained(args, plan)
     if not done:

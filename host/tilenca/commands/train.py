@@ -15,6 +15,7 @@ from tilenca.commands.train_plan import announce, check_out, make_plan
 from tilenca.commands.train_steps import train_model, training_command
 from tilenca.model import cost
 from tilenca.training.device import check_device
+from tilenca.training.tensorboard import check_tensorboard
 from tilenca.views.training import TrainingViews
 
 MOST_MISSED = 8  # missed targets to print, the worst ones first
@@ -40,6 +41,8 @@ def run(args: argparse.Namespace) -> int:
     started = time.monotonic()
     plan = make_plan(args)
     check_device(args.device)
+    if args.tensorboard:
+        check_tensorboard()
     fits = cost.check(plan.dimensions, len(plan.task.labels))
     check_out(args, plan)
     announce(plan, fits)

@@ -55,4 +55,9 @@ def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
         metavar="N",
         help="runs per drawing in the final measurement (as many as the recipe says)",
     )
+    add(
+        "--tensorboard",
+        action="store_true",
+        help="write event files for TensorBoard into DIR/tensorboard, too; needs that package",
+    )
     add("--force", action="store_true", help="replace the model in DIR, unless it is the better one")

@@ -5,7 +5,7 @@ import shlex
 import shutil
 import subprocess
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,8 @@ from tilenca.evaluation.suites import make_suite
 from tilenca.model.file import DEFAULT_CHANNELS, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipes import aims_of, find_recipe
+from tilenca.training.sessions import noted
+from tilenca.training.tensorboard import event_files
 from tilenca.views.training import TrainingViews
 
 if TYPE_CHECKING:
@@ -47,18 +49,21 @@ def train_model(
         TilencaError: no seed was trained to its end, or the model cannot be written.
     """
     metadata = _metadata(args)  # the commit may change while the training runs
-    try:
-        jobs = _train(args, plan, views)
-    except (InterruptedRunError, KeyboardInterrupt) as error:
-        raise _interrupted(args, str(error) or "while training", go_on) from None
-    try:
-        result = _measured(plan, _best(jobs, args.seed), SUITE_SEED + args.seed, metadata, args.out, views)
-    except KeyboardInterrupt:
-        raise _interrupted(args, "while measuring the trained model", go_on) from None
+    with noted(args.out, training_command(args, str), args.recipe, args.resume) as session:
+        try:
+            jobs = _train(args, plan, views)
+        except (InterruptedRunError, KeyboardInterrupt) as error:
+            raise _interrupted(args, str(error) or "while training", go_on) from None
+        seed = SUITE_SEED + args.seed
+        try:
+            result = _measured(plan, _best(jobs, args.seed), seed, metadata, args.out, views)
+        except KeyboardInterrupt:
+            raise _interrupted(args, "while measuring the trained model", go_on) from None
 
-    from tilenca.training.results import keep
+        from tilenca.training.results import keep
 
-    where = keep(args.out, result)
+        where = keep(args.out, result)
+        session.moved(where)
     _draw_history(where, result)
     for path in checkpoints(args.out):
         path.unlink()
@@ -70,7 +75,10 @@ def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews) -
     from tilenca.training.runner import train_side_by_side
 
     jobs = jobs_of(args, plan)
-    with views.training(plan.seeds, plan.recipe.iterations) as tell:
+    with ExitStack() as stack:
+        tell = stack.enter_context(views.training(plan.seeds, plan.recipe.iterations))
+        if args.tensorboard:
+            tell = stack.enter_context(event_files(args.out, tell))
         if args.scheduler is None:
             failures = train_side_by_side(jobs, at_once(args, plan), tell)
         else:

@@ -5,10 +5,10 @@ The same data give the same bytes, with any settings of the user's matplotlib.
 
 import errno
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,8 @@ except ImportError as error:
         f"plots need matplotlib, which is not installed; run: {install_remedy('plot')}"
     ) from error
 
+# Values in the order of columns; None: not measured there.
+Rows: TypeAlias = Sequence[Sequence[float | None]]
 HISTORY = ("iteration", "loss", "agreement")
 SMOOTHED = 60  # lines of fewer points are drawn as they are
 
@@ -124,9 +126,45 @@ def plot_history(
         save(figure, path)
 
 
+def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
+    """Draws loss and agreement of several trainings over each other.
+
+    Args:
+        runs: by the name that stands for each; rows of (iteration, loss, agreement), as of `plot_history`.
+        path: PNG or SVG.
+
+    Raises:
+        UsageError: nothing was trained yet, or what `save` says.
+    """
+    tables = {
+        name: np.array([[math.nan if x is None else x for x in row[:3]] for row in rows], np.float64)
+        for name, rows in runs.items()
+        if len(list(rows))
+    }
+    if not tables:
+        raise UsageError(f"{path}: no training there has a history to draw")
+    with styled():
+        figure = Figure(figsize=(WIDTH_IN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08))
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        figure.suptitle("Trainings", x=0.02, ha="left", fontsize=13, fontweight="bold")
+        for number, (name, table) in enumerate(tables.items()):
+            _draw_line(upper, table[:, 0], table[:, 1], number, name)
+            _draw_line(lower, table[:, 0], table[:, 2], number, name)
+        _as_loss(upper, min(float(np.nanmin(table[:, 1])) for table in tables.values()))
+        _as_agreement(lower)
+        lower.set_ylabel("training samples all right")
+        lower.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, fontsize="small")
+        save(figure, path)
+
+
 def _draw_loss(axes: Axes, iteration: NDArray[np.float64], loss: NDArray[np.float64]) -> None:
     _draw_line(axes, iteration, loss, 0)
-    if np.nanmin(loss, initial=math.inf) > 0:
+    _as_loss(axes, float(np.nanmin(loss, initial=math.inf)))
+
+
+def _as_loss(axes: Axes, least: float) -> None:
+    """A logarithmic axis, unless a loss is 0."""
+    if least > 0:
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -141,6 +179,10 @@ def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
         _draw_line(axes, data["iteration"], data[name], number, label)
     if len(lines) > 1:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, fontsize="small")
+    _as_agreement(axes)
+
+
+def _as_agreement(axes: Axes) -> None:
     axes.set_ylim(-0.02, 1.02)
     axes.set_ylabel("share with every tile right")
     axes.set_xlabel("iteration")
