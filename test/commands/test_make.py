@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from support.alone import alone
+from support.schemas import fits
 from tilenca.base import paths
 from tilenca.cli import main
 from tilenca.commands.make import STEPS
@@ -42,6 +43,7 @@ def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
     again = capsys.readouterr()
     assert "[2/5] train: trained on this file before; --force trains anew" in again.err
     document = json.loads(again.out)
+    assert fits("make", document)
     assert document["metrics"] == json.loads((out / "metrics.json").read_text(encoding="utf-8"))
     assert [run["shape"] for run in document["runs"]] == ["1", "7"]
     assert document["model_id"] == f"{hello.model_id:04X}"

@@ -15,6 +15,7 @@ import pytest
 
 from support.alone import alone
 from support.intel_hex import image
+from support.schemas import fits
 from tilenca.base import paths
 
 LIMIT_S = 120
@@ -65,7 +66,9 @@ def monitored(served: str, *options: str) -> Iterator[dict[str, Any]]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as monitor:
         try:
             assert monitor.stdout is not None
-            yield from map(json.loads, monitor.stdout)
+            for sentence in map(json.loads, monitor.stdout):
+                assert fits("monitor", sentence)
+                yield sentence
         finally:
             monitor.send_signal(signal.SIGINT)
 
@@ -73,7 +76,9 @@ def monitored(served: str, *options: str) -> Iterator[dict[str, Any]]:
 def flash(served: str, firmware: Path) -> None:
     done = tilenca("flash", "--json", "--hex", str(firmware), "--port", served)
     assert done.returncode == 0, done.stderr
-    results = json.loads(done.stdout)["tiles"]
+    document = json.loads(done.stdout)
+    assert fits("flash", document)
+    results = document["tiles"]
     assert [(Path(tile["port"]).name, tile["result"]) for tile in results] == [
         (f"tile-0{number}", "flashed") for number in (1, 2, 3)
     ]
@@ -82,6 +87,7 @@ def flash(served: str, firmware: Path) -> None:
 def test_devices_lists_served_tiles(served: str) -> None:
     done = tilenca("devices", "--json", "--port", served)
     assert done.returncode == 0, done.stderr
+    assert fits("devices", json.loads(done.stdout))
     assert [Path(device["port"]).name for device in json.loads(done.stdout)["devices"]] == [
         "tile-01",
         "tile-02",

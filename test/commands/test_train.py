@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from support.schemas import fits
 from support.training import train
 from tilenca import cli
 from tilenca.commands.train import add_arguments, report, share_named
@@ -27,6 +28,7 @@ def test_the_same_seed_gives_the_same_bytes_and_json_names_them(
     assert train(two_shapes, trained_model, "--force", "--json") == 0
     assert {name: (trained_model / name).read_bytes() for name in WRITTEN} == before
     document = json.loads(capsys.readouterr().out)
+    assert fits("train", document)
     assert document["model"] == str(trained_model)
     assert document["seconds"] > 0
     assert document["metrics"] == json.loads((trained_model / "metrics.json").read_text())

@@ -41,13 +41,13 @@ def test_a_view_hears_of_every_seed_and_every_row(two_shapes: Path, tmp_path: Pa
         yield rows.append
 
     args = arguments(two_shapes, tmp_path, "--seed", "3", "--seeds", "2", "--jobs", "1", "--iterations", "12")
-    where, result = train_model(args, make_plan(args), TrainingViews(training, measuring), "")
-    assert where == tmp_path
+    made = train_model(args, make_plan(args), TrainingViews(training, measuring), "")
+    assert made.folder == tmp_path
     assert {one.seed for one in heard} == {3, 4}
     assert heard[-1].iteration == 12
-    assert len(rows) == len(result.metrics["rows"])
-    assert load_model(tmp_path).model_id == result.model.model_id
-    assert json.loads((tmp_path / "metrics.json").read_text()) == result.metrics
+    assert len(rows) == len(made.metrics["rows"])
+    assert load_model(tmp_path).model_id == made.model.model_id
+    assert json.loads((tmp_path / "metrics.json").read_text()) == made.metrics
     assert (tmp_path / "history.png").exists()
     assert not list(tmp_path.glob("*.pt"))
 

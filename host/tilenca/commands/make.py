@@ -130,11 +130,11 @@ def _check(args: argparse.Namespace, plan: TrainingPlan, fits: cost.Fit, done: b
 def _train(args: argparse.Namespace, plan: TrainingPlan, steps: Steps) -> int:
     """Trains and measures a model; 1 where the folder kept a better one."""
     steps.begin(TRAIN)
-    where, result = train_model(
+    made = train_model(
         args, plan, steps.training_views(TRAIN, MEASURE), "to go on, run the same command again"
     )
-    steps.end(MEASURE, f"{result.metrics['targets_held']} targets held")
-    return 0 if where == args.out else 1
+    steps.end(MEASURE, f"{made.metrics['targets_held']} targets held")
+    return 0 if made.folder == args.out else 1
 
 
 def _emulated(args: argparse.Namespace, steps: Steps) -> list[EmulationResult]:

@@ -47,11 +47,11 @@ def run(args: argparse.Namespace) -> int:
     check_out(args, plan)
     announce(plan, fits)
     go_on = f"continue with: {training_command(args, str)} --resume"
-    where, result = train_model(args, plan, TrainingViews(), go_on)
-    report(args, where, result.metrics, time.monotonic() - started)
-    if (note := without_a_dash(result.model)) is not None:
+    made = train_model(args, plan, TrainingViews(), go_on)
+    report(args, made.folder, made.metrics, time.monotonic() - started)
+    if (note := without_a_dash(made.model)) is not None:
         warn(note)
-    return judged(args.recipe, result.metrics)
+    return judged(args.recipe, made.metrics)
 
 
 def judged(recipe: str, metrics: dict[str, Any]) -> int:

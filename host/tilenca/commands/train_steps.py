@@ -6,8 +6,9 @@ import shutil
 import subprocess
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tilenca import __version__
 from tilenca.base import paths
@@ -17,7 +18,7 @@ from tilenca.base.stdio import warn
 from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan
 from tilenca.evaluation.suites import make_suite
-from tilenca.model.file import DEFAULT_CHANNELS, checkpoints
+from tilenca.model.file import DEFAULT_CHANNELS, Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipes import aims_of, find_recipe
 from tilenca.training.sessions import noted
@@ -33,10 +34,23 @@ SUITE_SEED = 1_000_000  # larger than any usual --seed, so that training never d
 SELECTION_RUNS = 50  # of each drawing, to choose among seeds
 
 
-def train_model(
-    args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, go_on: str
-) -> "tuple[Path, Result]":
-    """Trains, measures, quantises, writes; returns the folder of the model, and the result.
+@dataclass(frozen=True)
+class NewModel:
+    """The result of a training as it was kept.
+
+    Attributes:
+        folder: of its files, which is another one than asked for where that holds a better model.
+        model: the integer model.
+        metrics: as in metrics.json.
+    """
+
+    folder: Path
+    model: Model
+    metrics: dict[str, Any]
+
+
+def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, go_on: str) -> NewModel:
+    """Trains, measures, quantises, writes.
 
     Args:
         args: of `add_training_arguments`, with `shapes` (a list), `out` and `resume`.
@@ -67,7 +81,7 @@ def train_model(
     _draw_history(where, result)
     for path in checkpoints(args.out):
         path.unlink()
-    return where, result
+    return NewModel(where, result.model, result.metrics)
 
 
 def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews) -> "list[Job]":

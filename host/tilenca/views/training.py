@@ -4,7 +4,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from rich.console import Console
@@ -82,8 +82,12 @@ class TrainingViews:
         measuring: as `show_measuring`.
     """
 
-    training: Callable[[Sequence[int], int], AbstractContextManager[Tell]] = show_training
-    measuring: Callable[[str], AbstractContextManager[Callable[[str], None]]] = show_measuring
+    training: Callable[[Sequence[int], int], AbstractContextManager[Tell]] = field(
+        default_factory=lambda: show_training
+    )
+    measuring: Callable[[str], AbstractContextManager[Callable[[str], None]]] = field(
+        default_factory=lambda: show_measuring
+    )
 
 
 def agreement_curve(total: int) -> Curve:
