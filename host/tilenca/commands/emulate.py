@@ -21,8 +21,8 @@ from tilenca.commands.emulate_runs import (
     print_results,
     run_all,
     updates_for,
-    watch,
 )
+from tilenca.commands.emulate_watch import watch_all
 from tilenca.commands.origin import model_with_id, own_shapes, without_a_dash
 from tilenca.commands.own_firmware import image_of
 from tilenca.emulator.experiment import Emulation, EmulationSettings
@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
     with ExitStack() as stack:
         record = stack.enter_context(Recorder(args.record, "w")) if args.record else None
         if args.watch:
-            results = [watch(args, asked.task, asked.lay_out, shape, record) for shape in asked.shapes]
+            results = watch_all(args, asked.task, asked.lay_out, asked.shapes, record)
         else:
             results = run_all(args, asked.task, asked.lay_out, asked.shapes, record)
     return tell_results(args, results, asked.told)

@@ -166,7 +166,7 @@ def _tell(args: argparse.Namespace, model: Model, metrics: dict[str, Any]) -> No
     for note in notes:
         print(fill(note, NOTE_WIDTH, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
     for what, then in (
-        ("next, watch them", f"tilenca emulate --model {place} --watch --seconds 10"),
+        ("next, watch them", f"tilenca emulate --model {place} --watch"),
         ("for real tiles", f"tilenca flash --model {place}"),
         ("all measurements", str(args.out / "README.md")),
         ("the digits again", "tilenca emulate"),
