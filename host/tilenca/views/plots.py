@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.project import install_remedy
+from tilenca.views.abilities import QUESTIONS
 
 try:
     from matplotlib import style
@@ -30,6 +31,7 @@ except ImportError as error:
 # Values in the order of columns; None: not measured there.
 Rows: TypeAlias = Sequence[Sequence[float | None]]
 HISTORY = ("iteration", "loss", "agreement")
+WIDEST, THINNER, THINNEST = 3.2, 0.2, 1.2  # lines: the first, each one after it, and none below
 SMOOTHED = 60  # lines of fewer points are drawn as they are
 
 SUFFIXES = (".png", ".svg")
@@ -173,11 +175,11 @@ def _as_loss(axes: Axes, least: float) -> None:
 
 
 def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
-    lines = ["agreement", *(name for name in data if name.startswith("@"))]
-    for number, name in enumerate(lines):
-        label = "training samples" if number == 0 else _question(name[1:])
-        _draw_line(axes, data["iteration"], data[name], number, label)
-    if len(lines) > 1:
+    _draw_line(axes, data["iteration"], data["agreement"], 0, "training samples", INK)
+    measured = sorted((_place(name[1:]), name) for name in data if name.startswith("@"))
+    for place, name in measured:
+        _draw_line(axes, data["iteration"], data[name], place, _question(name[1:]))
+    if measured:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, fontsize="small")
     _as_agreement(axes)
 
@@ -191,17 +193,37 @@ def _as_agreement(axes: Axes) -> None:
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0%}"))
 
 
+def _place(name: str) -> int:
+    """The number of a kind of measurement, which is the same in the picture of every training."""
+    kinds = list(QUESTIONS)
+    return kinds.index(name) if name in kinds else len(kinds) + (int(name) if name.isdigit() else 0)
+
+
 def _question(name: str) -> str:
     return f"measured after {name} steps" if name.isdigit() else name
 
 
 def _draw_line(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], number: int, label: str | None = None
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    number: int,
+    label: str | None = None,
+    colour: str | None = None,
 ) -> None:
-    """Every point faintly, and their running mean."""
+    """Every point faintly, and their running mean.
+
+    Args:
+        axes: where.
+        x: of the points.
+        y: of the points; those without a number are left out.
+        number: decides colour and dashes; a later line is thinner, so that one beneath it still shows.
+        label: in the legend.
+        colour: another one.
+    """
     known = ~np.isnan(y)
     x, y = x[known], y[known]
-    colour, dashes = LINES[number % len(LINES)], DASHES[number % len(DASHES)]
+    colour, dashes = colour or LINES[number % len(LINES)], DASHES[number % len(DASHES)]
     few = len(x) < SMOOTHED
     if not few:
         axes.plot(x, y, color=colour, linewidth=0.8, alpha=0.3)
@@ -210,7 +232,7 @@ def _draw_line(
         y if few else _smooth(y, len(y) // (SMOOTHED // 2)),
         color=colour,
         linestyle=dashes,
-        linewidth=2,
+        linewidth=max(WIDEST - THINNER * number, THINNEST),
         label=label,
         marker="o" if few else "",
         markersize=4,
