@@ -12,6 +12,7 @@ from support.alone import alone
 from support.schemas import fits
 from tilenca.base import paths
 from tilenca.cli import main
+from tilenca.commands import make
 from tilenca.commands.make import STEPS
 from tilenca.emulator.greeting import greeting
 from tilenca.model.file import load_model
@@ -102,3 +103,9 @@ def test_bad_drawings_are_refused_before_anything_is_trained(
 def test_a_trained_model_names_its_recipe(trained_model: Path) -> None:
     about = json.loads((trained_model / "model.json").read_text(encoding="utf-8"))
     assert about["metadata"]["recipe_name"] == "smoke"
+
+
+def test_a_model_is_the_best_of_the_seeds_that_its_command_names(trained_model: Path) -> None:
+    assert make._seeds(load_model(trained_model).metadata) == (5,)
+    assert make._seeds({"command": "tilenca train --seed 3 --seeds 2"}) == (3, 4)
+    assert make._seeds({}) == ()

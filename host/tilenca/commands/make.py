@@ -7,7 +7,7 @@ import shlex
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from textwrap import fill
@@ -223,16 +223,25 @@ def _is_trained(args: argparse.Namespace, plan: TrainingPlan) -> bool:
     model = load_model(args.out)
     metadata = model.metadata
     there = (
-        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), metadata.get("seed"),
+        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), _seeds(metadata),
         metadata.get("recipe", {}).get("iterations"), model.dimensions,
     )  # fmt: skip
     sha256 = hashlib.sha256(args.shapes[0].read_bytes()).hexdigest()
-    if there == (sha256, args.recipe, args.seed, plan.recipe.iterations, plan.dimensions):
+    if there == (sha256, args.recipe, plan.seeds, plan.recipe.iterations, plan.dimensions):
         return True
     raise UsageError(
         f"{args.out}: holds a model of another file, recipe, seed or size; give another --out, or --force to "
         "replace it"
     )
+
+
+def _seeds(metadata: Mapping[str, Any]) -> tuple[int, ...]:
+    """The seeds of which a model is the best one, by the command that made it."""
+    words = shlex.split(str(metadata.get("command", "")))
+    first, count = (
+        int(words[words.index(option) + 1]) if option in words else 0 for option in ("--seed", "--seeds")
+    )
+    return tuple(range(first, first + count))
 
 
 def _expected_s(args: argparse.Namespace, plan: TrainingPlan) -> float:
