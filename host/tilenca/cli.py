@@ -1,3 +1,4 @@
+# PYTHON_ARGCOMPLETE_OK
 """The `tilenca` command: finds the subcommand, runs it, and turns failures into one line and an exit status.
 
 A subcommand is a module with a one-line docstring (its help), `add_arguments(parser)` and `run(args) -> int`.
@@ -17,6 +18,7 @@ from tilenca.base.project import install_remedy
 from tilenca.base.signals import acknowledging, ending_like_ctrl_c
 from tilenca.base.stdio import check_streams, finish_streams, warn
 from tilenca.base.suggest import did_you_mean
+from tilenca.commands import completion
 from tilenca.commands.arguments import Parser
 from tilenca.commands.examples import epilog
 
@@ -25,6 +27,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "make": ("tilenca.commands.make", "from drawings to tiles: check, train, build and emulate"),
     "shapes": ("tilenca.commands.shapes", "draw and check a shape file, and what its classes may become"),
     "train": ("tilenca.commands.train", "train a model on the shapes of a file"),
+    "runs": ("tilenca.commands.runs", "list the trainings in a folder, and draw them over each other"),
     "evaluate": ("tilenca.commands.evaluate", "measure how well a model does on shapes"),
     "sweep": ("tilenca.commands.sweep", "measure over every combination of conditions, on many cores"),
     "report": ("tilenca.commands.report", "measure every claim again, as a page with figures"),
@@ -115,6 +118,8 @@ def _activation() -> str:
 
 
 def _run(arguments: list[str]) -> int:
+    if completion.is_asked():
+        completion.complete(build_parser(completion.command_asked()))
     if not arguments:
         build_parser().print_help()
         return 0

@@ -75,6 +75,28 @@ def test_an_interrupt_is_acknowledged_while_compiled_code_runs() -> None:
         signal.signal(signal.SIGTERM, before)
 
 
+def test_a_second_ctrl_c_is_told_what_it_changes_and_other_signals_repeat_the_promise() -> None:
+    said: queue.SimpleQueue[str] = queue.SimpleQueue()
+    before = {number: signal.signal(number, lambda *_: None) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        with acknowledging(said.put, after_s=0), promising("saves first; again ends without", "ends without"):
+            for number, text in (
+                (signal.SIGTERM, "SIGTERM: saves first; again ends without"),
+                (signal.SIGINT, "Ctrl-C: saves first; again ends without"),
+                (signal.SIGTERM, "SIGTERM: saves first; again ends without"),
+                (signal.SIGINT, "Ctrl-C: ends without"),
+            ):
+                signal.raise_signal(number)
+                assert said.get(timeout=30) == f"tilenca: {text}"
+        for _ in range(2):  # a new command begins anew
+            with acknowledging(said.put, after_s=0):
+                signal.raise_signal(signal.SIGINT)
+                assert said.get(timeout=30) == "tilenca: Ctrl-C: ends as soon as the step at work is done"
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def test_a_command_that_ends_at_once_needs_no_acknowledgement() -> None:
     said: list[str] = []
     with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c(), acknowledging(said.append, after_s=30):

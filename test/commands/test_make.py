@@ -1,15 +1,22 @@
 """From drawings to tiles in one command."""
 
 import json
+import os
+import re
+import signal
 from pathlib import Path
 
 import pytest
 
 from support.alone import alone
+from support.schemas import fits
 from tilenca.base import paths
 from tilenca.cli import main
+from tilenca.commands import make
+from tilenca.commands.make import STEPS
 from tilenca.emulator.greeting import greeting
 from tilenca.model.file import load_model
+from tilenca.views.steps import Steps
 
 QUICK = ("--recipe", "smoke", "--hidden", "12", "--iterations", "30")
 
@@ -22,19 +29,52 @@ def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
     with alone("platformio"):
         first = main(words)
     said = capsys.readouterr()
-    for number in (1, 2, 3, 4):
-        assert f"[{number}/4] " in said.err
-    assert "at most about 1 min, less if the targets hold early" in said.err
-    assert f"next: tilenca emulate --model {out}" in said.err
+    for number, name in enumerate(STEPS, start=1):
+        assert f"[{number}/5] {name}" in said.err
+    assert re.search(r"\[2/5\] train; at most \d+ (s|min) left, less if the targets hold early", said.err)
+    assert re.search(r"\[3/5\] measure done in \d+ s: \d+ of \d+ targets held", said.err)
+    assert f"for real tiles: tilenca flash --model {out}" in said.err
+    assert "not well enough: " in said.out
     assert first in (0, 1), "thirty iterations may leave tiles wrong"
     hello = greeting(paths.model_elf(out))
     assert hello is not None
     assert hello.model_id == load_model(out).model_id
     with alone("platformio"):
-        assert main(words) == first
-    assert "was trained on this file already" in capsys.readouterr().err
+        assert main([*words, "--json"]) == first
+    again = capsys.readouterr()
+    assert "[2/5] train: trained on this file before; --force trains anew" in again.err
+    document = json.loads(again.out)
+    assert fits("make", document)
+    assert document["metrics"] == json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+    assert [run["shape"] for run in document["runs"]] == ["1", "7"]
+    assert document["model_id"] == f"{hello.model_id:04X}"
     assert main([*words, "--seed", "9"]) == 2
     assert "holds a model of another file, recipe, seed or size" in capsys.readouterr().err
+
+
+def test_an_interrupted_training_goes_on_with_the_same_command(
+    two_shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+
+    def interrupt(steps: Steps, name: str, note: str, share: float | None = None) -> None:
+        told.append(note)
+        if len(told) == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    out = tmp_path / "mine"
+    words = ["make", str(two_shapes), "--out", str(out), *QUICK]
+    with monkeypatch.context() as patch:
+        patch.setattr(Steps, "move", interrupt)
+        assert main(words) == 130
+    assert "to go on, run the same command again" in capsys.readouterr().err
+    assert (out / "checkpoint-1.pt").exists()
+    assert main([*words, "--seed", "2"]) == 2
+    assert "holds an unfinished run of another seed; give another --out" in capsys.readouterr().err
+    with alone("platformio"):
+        assert main(words) in (0, 1)
+    assert not (out / "checkpoint-1.pt").exists()
+    assert (out / "model.json").exists()
 
 
 def test_what_ships_and_what_is_there_is_not_overwritten(
@@ -63,3 +103,9 @@ def test_bad_drawings_are_refused_before_anything_is_trained(
 def test_a_trained_model_names_its_recipe(trained_model: Path) -> None:
     about = json.loads((trained_model / "model.json").read_text(encoding="utf-8"))
     assert about["metadata"]["recipe_name"] == "smoke"
+
+
+def test_a_model_is_the_best_of_the_seeds_that_its_command_names(trained_model: Path) -> None:
+    assert make._seeds(load_model(trained_model).metadata) == (5,)
+    assert make._seeds({"command": "tilenca train --seed 3 --seeds 2"}) == (3, 4)
+    assert make._seeds({}) == ()

@@ -1,5 +1,6 @@
 """A model's firmware beside its files."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from support.alone import alone
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
 from tilenca.commands import own_firmware
-from tilenca.commands.own_firmware import build_beside, image_of
+from tilenca.commands.own_firmware import build_beside, image_of, image_to_write
 from tilenca.emulator.greeting import greeting
 from tilenca.model.file import load_model
 
@@ -32,7 +33,7 @@ def test_sources_that_are_current_stay_and_others_are_brought_up_to_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     built: list[Path] = []
-    monkeypatch.setattr(own_firmware, "build", built.append)
+    monkeypatch.setattr(own_firmware, "build", lambda out, quiet: built.append(out))
     model = load_model(paths.MODELS / "hex")
     build_beside(model, tmp_path)
     out = paths.model_firmware(tmp_path)
@@ -54,4 +55,32 @@ def test_a_model_without_a_build_says_how_to_get_one(tmp_path: Path) -> None:
         BuildError, match=r"no firmware was built of it; run: tilenca export --model .* --build"
     ):
         image_of(tmp_path)
-    assert image_of(paths.DEFAULT_MODEL) == paths.firmware_elf()
+
+
+def test_the_projects_own_firmware_is_that_of_the_digits_only_while_it_has_them(
+    firmware: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(own_firmware, "firmware_image", lambda: firmware)
+    digits = load_model(paths.DEFAULT_MODEL)
+    assert image_of(paths.DEFAULT_MODEL) == firmware
+    shutil.copytree(paths.MODELS / "hex", tmp_path / "hex")
+    monkeypatch.setattr(paths, "DEFAULT_MODEL", tmp_path / "hex")
+    with pytest.raises(BuildError, match=rf"has model {digits.model_id:04X}, not [0-9A-F]{{4}} of .*--build"):
+        image_of(tmp_path / "hex")
+
+
+def test_what_is_written_to_tiles_is_built_first_unless_told_or_impossible(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built: list[Path] = []
+    monkeypatch.setattr(own_firmware, "build", lambda out, quiet: built.append(out))
+    model = tmp_path / "hex"
+    shutil.copytree(paths.MODELS / "hex", model)
+    assert image_to_write(model) == paths.model_elf(model)
+    assert built == [paths.model_firmware(model)]
+    paths.model_elf(model).parent.mkdir(parents=True)
+    paths.model_elf(model).touch()
+    assert image_to_write(model, building=False) == paths.model_elf(model)
+    monkeypatch.setattr(paths, "PROJECT", None)
+    assert image_to_write(model) == paths.model_elf(model)
+    assert len(built) == 1

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from support.schemas import fits
 from tilenca import cli
 from tilenca.base import paths
 from tilenca.report import experiments
@@ -31,6 +32,7 @@ def test_a_report_is_measured_once_and_each_number_repeats(
     assert cli.main(["report", "--quick", "--out", str(out), "--jobs", "2", "--json"]) == 0
     said = capsys.readouterr()
     result = json.loads(said.out)
+    assert fits("report", result)
     assert json.loads((out / "report.json").read_text())["rows"] == result["rows"]
     page = (out / "report.html").read_text()
     assert page.count("<svg") == 2

@@ -3,6 +3,7 @@
 import json
 import os
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +13,9 @@ from typing import Any
 
 import pytest
 
+from support.alone import alone
 from support.intel_hex import image
+from support.schemas import fits
 from tilenca.base import paths
 
 LIMIT_S = 120
@@ -63,7 +66,9 @@ def monitored(served: str, *options: str) -> Iterator[dict[str, Any]]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as monitor:
         try:
             assert monitor.stdout is not None
-            yield from map(json.loads, monitor.stdout)
+            for sentence in map(json.loads, monitor.stdout):
+                assert fits("monitor", sentence)
+                yield sentence
         finally:
             monitor.send_signal(signal.SIGINT)
 
@@ -71,7 +76,9 @@ def monitored(served: str, *options: str) -> Iterator[dict[str, Any]]:
 def flash(served: str, firmware: Path) -> None:
     done = tilenca("flash", "--json", "--hex", str(firmware), "--port", served)
     assert done.returncode == 0, done.stderr
-    results = json.loads(done.stdout)["tiles"]
+    document = json.loads(done.stdout)
+    assert fits("flash", document)
+    results = document["tiles"]
     assert [(Path(tile["port"]).name, tile["result"]) for tile in results] == [
         (f"tile-0{number}", "flashed") for number in (1, 2, 3)
     ]
@@ -80,6 +87,7 @@ def flash(served: str, firmware: Path) -> None:
 def test_devices_lists_served_tiles(served: str) -> None:
     done = tilenca("devices", "--json", "--port", served)
     assert done.returncode == 0, done.stderr
+    assert fits("devices", json.loads(done.stdout))
     assert [Path(device["port"]).name for device in json.loads(done.stdout)["devices"]] == [
         "tile-01",
         "tile-02",
@@ -105,3 +113,20 @@ def test_tiles_are_programmed_side_by_side_and_run_what_was_written(
         if not missing:
             break
     assert set(first.values()) == {"HELLO"}, "the ports' opening has reset them"
+
+
+def test_a_models_own_firmware_is_built_and_written_and_the_projects_stays(
+    served: str, firmware: Path, tmp_path: Path
+) -> None:
+    model, before = tmp_path / "hex", {p: p.read_bytes() for p in paths.FIRMWARE.rglob("*") if p.is_file()}
+    shutil.copytree(paths.MODELS / "hex", model)
+    model_id = json.loads((model / "model.json").read_text(encoding="utf-8"))["model_id"]
+    for result in ("flashed", "skipped"):
+        with alone("platformio"):
+            done = tilenca("flash", "--json", "--model", str(model), "--port", served)
+        assert done.returncode == 0, done.stderr
+        assert [tile["result"] for tile in json.loads(done.stdout)["tiles"]] == [result] * 3
+    hello = next(sentence for sentence in monitored(served) if sentence["type"] == "HELLO")
+    assert hello["fields"]["model_id"] == model_id
+    assert {p: p.read_bytes() for p in paths.FIRMWARE.rglob("*") if p.is_file()} == before
+    flash(served, firmware.with_suffix(".hex"))  # as the other tests expect them

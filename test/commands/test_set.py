@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from support.schemas import fits
 from support.scripted_port import HELLO, Device
 from support.tile_port import STATE
 from tilenca import cli
@@ -45,6 +46,7 @@ def test_what_is_acknowledged_is_read_back_and_told(capsys: pytest.CaptureFixtur
     devices = [tile(1), tile(2)]
     assert set_in(devices, "brightness", "80", "--json") == 0
     document = json.loads(capsys.readouterr().out)
+    assert fits("set", document)
     assert [(row["tile"], row["result"], row["settings"]["brightness"]) for row in document["tiles"]] == [
         (1, "set", 80),
         (2, "set", 80),

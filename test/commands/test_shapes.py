@@ -23,6 +23,8 @@ def test_every_drawing_is_shown_and_counted(capsys: pytest.CaptureFixture[str]) 
     assert "4 5x4" in out
     assert "10 drawings of 10 classes: 0 1 2 3 4 5 6 7 8 9" in out
     assert "may become" not in out
+    assert "tiles will show\n┏━┓    ╻  ╺━┓" in out
+    assert "one tile makes the difference between" in out
 
 
 def test_the_json_says_what_the_contract_asks(capsys: pytest.CaptureFixture[str]) -> None:
@@ -30,6 +32,7 @@ def test_the_json_says_what_the_contract_asks(capsys: pytest.CaptureFixture[str]
     four = next(shape for shape in report["shapes"] if shape["label"] == "4")
     assert four == {"label": "4", "rows": 5, "cols": 4, "tiles": 10, "display": "bcfg"}
     assert report["problems"] == []
+    assert any("6 and 8" in sentence for sentence in report["advice"])
     assert "variants" not in report
 
 

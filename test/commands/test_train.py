@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from support.schemas import fits
 from support.training import train
 from tilenca import cli
 from tilenca.commands.train import add_arguments, report, share_named
@@ -27,6 +28,7 @@ def test_the_same_seed_gives_the_same_bytes_and_json_names_them(
     assert train(two_shapes, trained_model, "--force", "--json") == 0
     assert {name: (trained_model / name).read_bytes() for name in WRITTEN} == before
     document = json.loads(capsys.readouterr().out)
+    assert fits("train", document)
     assert document["model"] == str(trained_model)
     assert document["seconds"] > 0
     assert document["metrics"] == json.loads((trained_model / "metrics.json").read_text())
@@ -185,7 +187,7 @@ def test_a_full_disk_ends_training_with_one_line(
     full = f"seed 5: {out}/checkpoint-5.pt: No space left on device; make room there, or give another --out"
     assert said.err.splitlines().count(full) == 1
     assert "Traceback" not in said.err
-    assert list(out.iterdir()) == []
+    assert [path.name for path in out.iterdir()] == ["sessions.json"]
 
 
 def test_the_worst_missed_targets_come_first_and_the_card_has_the_rest(

@@ -59,7 +59,7 @@ def test_the_words_of_the_progress_line_are_explained(
     plan = make_plan(arguments(tmp_path, "--recipe", recipe))
     announce(plan, cost.check(plan.dimensions, len(plan.task.labels)))
     last = capsys.readouterr().err.splitlines()[-1]
-    assert last.startswith("progress: the share of drawings with every tile right, ")
+    assert last.startswith("progress: the share of drawings with every tile right; ")
     assert ("how many targets of the model card are met" in last) == measures
 
 

@@ -75,3 +75,27 @@ def test_health_begins_anew_when_a_tile_restarts() -> None:
     for uptime_ms, received, lost in ((0, 100, 0), (1000, 100, 100), (500, 5, 0), (500 + WINDOW_MS, 15, 0)):
         health.take(link(1, "E", 2, uptime_ms, received, lost))
     assert health.good == 1.0
+
+
+def garbled(uptime_ms: int, corrupt: int, received: int = 0) -> LinkSentence:
+    return LinkSentence(7, uptime_ms, "N", 0, received, corrupt, 0, 0, None, 0, None, None)
+
+
+def test_a_tile_of_which_nothing_arrives_whole_is_told_from_noise_and_from_nobody() -> None:
+    assert health(garbled(1000, 0), garbled(2000, 36)).garbled
+    assert not health(garbled(1000, 36)).garbled, "one report counts since the start, not lately"
+    assert not health(garbled(1000, 0), garbled(2000, 0)).garbled
+    assert not health(garbled(1000, 0), garbled(2000, 3)).garbled, "an open input hears noise"
+    assert not health(garbled(1000, 0), garbled(2000, 36, received=1)).garbled
+    assert not health(garbled(0, 500), *(garbled(ms, 500) for ms in range(1000, 12_000, 1000))).garbled
+
+
+def test_a_link_that_was_never_good_is_marked_dead_and_told_once() -> None:
+    lab = three_in_an_l()
+    for second in range(1, 4):
+        lab.say("c", LinkSentence(3, 1000 * second, "E", 0, 0, 30 * second, 0, 0, None, 0, None, None))
+    assert Grid().cells(lab.fleet, 1.0)[1, 0].marks["E"] is Mark.DEAD
+    told = [text for text in lab.news if "whole" in text]
+    assert told == ["on E is a tile, but no frame of it arrives whole: check the plug"]
+    lab.say("c", LinkSentence(3, 4000, "E", 0, 40, 95, 0, 0, 5, 0, 9, "W"))
+    assert lab.news[-1] == "frames from E are not garbled any more"

@@ -5,7 +5,7 @@ from dataclasses import fields
 import pytest
 
 from tilenca.base.errors import UsageError
-from tilenca.training.recipes import RECIPES, Recipe, aims_of, find_recipe
+from tilenca.training.recipes import RECIPES, Recipe, aims_of, find_recipe, trains_for
 
 SHARES = (
     "reset",
@@ -46,3 +46,9 @@ def test_aims_are_what_the_recipe_shows_in_training() -> None:
     full, paper = aims_of(RECIPES["full"]), aims_of(RECIPES["paper"])
     assert (full.stretch, full.damaged, full.unknown) == (RECIPES["full"].stretch, True, True)
     assert (paper.stretch, paper.damaged, paper.unknown) == (1.0, False, False)
+
+
+def test_one_answer_on_any_drawing_takes_drawings_beside_those_of_the_classes() -> None:
+    trained = {name for name, recipe in RECIPES.items() if trains_for(recipe, "one answer")}
+    assert trained == {"full", "forms", "many", "smoke"}
+    assert all(trains_for(recipe, "drawings") for recipe in RECIPES.values())

@@ -48,6 +48,22 @@ def test_training_ends_early_once_all_targets_held_several_times(
     assert trainer.iteration == 10 * HOLDS_TO_END
 
 
+@pytest.mark.parametrize(
+    ("unknown", "ends"), [(0.0, True), (0.2, False)], ids=["not trained for", "trained for"]
+)
+def test_a_target_that_the_recipe_does_not_train_for_keeps_no_training_going(
+    unknown: float, ends: bool, two_shapes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    easy = dict.fromkeys(TARGETS, Target(0.0)) | dict.fromkeys(
+        ("one answer", "one tile too many"), Target(2.0)
+    )
+    monkeypatch.setattr("tilenca.evaluation.metrics.TARGETS", easy)
+    recipe = replace(SMOKE, iterations=80, check_every=10, unknown=unknown, damaged=0.0)
+    trained = train_one(job_of([two_shapes], tmp_path, recipe=recipe), lambda _: None)
+    assert trained.ended == ends
+    assert "one answer" in trained.checks[-1][2], "it is measured all the same"
+
+
 def test_what_was_measured_best_is_kept(tmp_path: Path) -> None:
     job = job_of([paths.DEFAULT_SHAPES], tmp_path)
     learner = make_trainer(job)

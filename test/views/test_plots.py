@@ -41,6 +41,28 @@ def test_all_validation_columns_are_drawn_where_they_were_measured(figures: list
     assert set(np.asarray(measured.get_ydata())) == {0.5}
 
 
+def test_a_kind_of_measurement_looks_the_same_in_every_picture_and_no_line_hides_another(
+    figures: list[Figure],
+) -> None:
+    some = (*plots.HISTORY, "@sizes", "@drawings")
+    more = (*plots.HISTORY, "@longevity", "@drawings", "@lost", "@sizes", "@changes")
+    for columns in (some, more):
+        rows = [(*row, *[1.0] * (len(columns) - 3)) for row in ROWS]
+        plots.plot_history(rows, Path("unused.png"), columns)
+    first, second = (
+        {
+            str(line.get_label()): (line.get_color(), line.get_linestyle(), line.get_linewidth())
+            for line in figure.axes[1].get_lines()
+            if not str(line.get_label()).startswith("_")
+        }
+        for figure in figures
+    )
+    assert first.items() <= second.items()
+    assert len(set(second.values())) == len(second) == 6
+    widths = [look[2] for label, look in second.items() if label != "training samples"]
+    assert widths == sorted(set(widths), reverse=True), "each is drawn upon a wider one"
+
+
 def test_the_mean_line_begins_and_ends_near_its_points(figures: list[Figure]) -> None:
     plots.plot_history([(n, 100.0 - n, n / 100) for n in range(1, 100)], Path("unused.png"))
     raw, mean = figures[0].axes[0].get_lines()

@@ -9,7 +9,7 @@ from rich.console import Console
 from tilenca.base import paths
 from tilenca.shapes.file import Shape, load_task
 from tilenca.shapes.glyphs import GLYPHS
-from tilenca.views.tiles import Picture, beside, digit
+from tilenca.views.tiles import Picture, beside, digit, fitting
 
 SHAPE = Shape("L", ("#.", "##"), "L")
 LIT = Picture(SHAPE, (GLYPHS["L"], GLYPHS["8"], 0), ((0, 0, 30), (20, 20, 20), (0, 0, 0)))
@@ -90,3 +90,29 @@ def test_colours_are_the_leds_and_only_where_asked_for(monkeypatch: pytest.Monke
     assert "\x1b" not in shown(LIT)
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b" not in shown(LIT, colour=True)
+
+
+def plain(picture: Picture, width: int, height: int, ascii_only: bool = False) -> list[str]:
+    return [line.plain.rstrip() for line in fitting(picture, width, height, ascii_only)]
+
+
+def test_the_largest_picture_that_fits_is_taken() -> None:
+    assert plain(LIT, 80, 24)[0] == "╭─────╮"
+    assert plain(LIT, 80, 8) == ["L", "8 ·"]
+    assert plain(LIT, 12, 24) == ["L", "8 ·"]
+    assert plain(LIT, 80, 1) == ["▀▄"], "two rows of tiles in a line"
+    assert plain(LIT, 80, 6, ascii_only=True)[0].strip() != "L"
+    assert plain(LIT, 80, 5, ascii_only=True) == ["L", "8 ."]
+
+
+def test_the_tallest_shapes_with_ids_fit_a_usual_terminal() -> None:
+    block = Shape("8", ("#" * 6,) * 42, "8")
+    picture = Picture(block, (GLYPHS["8"],) * 252, ((20, 20, 20),) * 252)
+    lines = plain(picture, 80, 21)
+    assert lines == ["▀" * 6] * 21
+
+
+def test_labels_that_the_model_has_come_before_others_that_look_the_same() -> None:
+    picture = Picture(Shape("S", ("#",), "S"), (GLYPHS["S"],), ((0, 0, 30),))
+    assert fitting(picture, 80, 2, False, ("S",))[0].plain == "S "
+    assert fitting(picture, 80, 2, False, ())[0].plain == "5 "

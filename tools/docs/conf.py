@@ -25,6 +25,7 @@ extensions = [
     "sphinx_copybutton",
     "docs.docstrings",
     "docs.command_pages",
+    "docs.json_pages",
     "docs.module_pages",
 ]
 root_doc = "docs/index"

@@ -5,6 +5,7 @@ import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from types import FrameType
 
 from tilenca.base.stdio import warn
@@ -12,13 +13,35 @@ from tilenca.base.stdio import warn
 SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM", signal.SIGHUP: "the terminal closed"}
 ACKNOWLEDGE_AFTER_S = 0.4  # a command that has ended by then has said so itself
-_NEXT = ["ends as soon as the step at work is done"]
+
+
+@dataclass
+class _Promise:
+    """What happens next after Ctrl-C, and after a second one; whether there was a first."""
+
+    what: str
+    again: str
+    first_came: bool = False
+
+    def text(self, number: int) -> str:
+        """What happens next after this signal; other signals than Ctrl-C do not count."""
+        came, self.first_came = self.first_came, self.first_came or number == signal.SIGINT
+        return self.again if came and number == signal.SIGINT else self.what
+
+
+STILL = "still at that step; ends as soon as it is done"
+_NEXT = [_Promise("ends as soon as the step at work is done", STILL)]
 
 
 @contextmanager
-def promising(what: str) -> Iterator[None]:
-    """Within the block, an interrupt is acknowledged with this text: what happens next."""
-    _NEXT.append(what)
+def promising(what: str, again: str = STILL) -> Iterator[None]:
+    """Within the block, an interrupt is acknowledged with this text: what happens next.
+
+    Args:
+        what: happens after an interrupt.
+        again: happens after a second Ctrl-C.
+    """
+    _NEXT.append(_Promise(what, again))
     try:
         yield
     finally:
@@ -39,6 +62,7 @@ def acknowledging(say: Callable[[str], None] = warn, after_s: float = ACKNOWLEDG
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    _NEXT[0].first_came = False
     ended = threading.Event()
     mine, theirs = socket.socketpair()
     with mine, theirs:
@@ -63,7 +87,7 @@ def _acknowledge(
     while came := signals.recv(64):
         for number in came:
             if number in NAMES and not ended.wait(after_s):
-                say(f"tilenca: {NAMES[signal.Signals(number)]}: {_NEXT[-1]}")
+                say(f"tilenca: {NAMES[signal.Signals(number)]}: {_NEXT[-1].text(number)}")
 
 
 @contextmanager

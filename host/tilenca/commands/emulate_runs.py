@@ -5,13 +5,12 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.live import Live
 
 from tilenca.base.stdio import warn
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
@@ -27,7 +26,6 @@ from tilenca.views.progress import Tell, show_progress
 from tilenca.views.tiles import Picture, beside
 
 PLAIN_WIDTH = 80
-SETTLING_S = 0.001
 
 # Lays out one shape in tiles.
 LayOut = Callable[[Shape], Emulation]
@@ -43,12 +41,21 @@ class EmulationResult:
     notes: tuple[str, ...]
 
 
-def _record_line(shape: Shape, heard: Heard) -> str:
+def record_line(shape: Shape, heard: Heard) -> str:
+    """What a tile said as a line of a recording, newline included."""
     tile = int(heard.port.rpartition("-")[2])
     return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
 
 
-def _result(args: argparse.Namespace, emulation: Emulation, task: Task, started: float) -> EmulationResult:
+def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, started: float) -> EmulationResult:
+    """The result of a shape that has run to its end.
+
+    Args:
+        args: the command line.
+        emulation: that has ended.
+        task: that the shape is of.
+        started: when, on the monotonic clock.
+    """
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
     expected = 0 if args.foreign else updates_for(emulation.shape)
     if remedy := mismatch(emulation, task):
@@ -104,11 +111,25 @@ def _kept_eeprom(emulation: Emulation, directory: Path | None) -> Iterator[None]
 
 
 def run_all(
-    args: argparse.Namespace, task: Task, lay_out: LayOut, shapes: Sequence[Shape], record: Recorder | None
+    args: argparse.Namespace,
+    task: Task,
+    lay_out: LayOut,
+    shapes: Sequence[Shape],
+    record: Recorder | None,
+    shown: Callable[[], AbstractContextManager[Tell]] | None = None,
 ) -> list[EmulationResult]:
-    """Runs shapes side by side, as fast as they go; results come in the order of the shapes."""
+    """Runs shapes side by side, as fast as they go; results come in the order of the shapes.
+
+    Args:
+        args: the command line.
+        task: that the shapes are of.
+        lay_out: makes the tiles of a shape.
+        shapes: to run.
+        record: gets what the tiles say.
+        shown: shows how far the shapes are; None: bars, and a line about each shape.
+    """
     results = []
-    with show_progress() as tell:
+    with (shown or show_progress)() as tell:
 
         def run(shape: Shape, stopped: threading.Event) -> tuple[EmulationResult, list[str]]:
             return _run_one(args, task, lay_out, shape, tell, stopped)
@@ -117,7 +138,8 @@ def run_all(
             results.append(result)
             emulated_s, wall_s = result.report["simulated_s"], result.report["wall_s"]
             speed = emulated_s / max(wall_s, 0.001)
-            warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
+            if shown is None:
+                warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
             if record is not None:
                 record.write(lines)
     return results
@@ -139,51 +161,10 @@ def _run_one(
                 raise KeyboardInterrupt
             on_slice()
             if args.record is not None:
-                lines.extend(_record_line(shape, line) for line in heard)
+                lines.extend(record_line(shape, line) for line in heard)
 
         emulation.run(look)
-        return _result(args, emulation, task, started), lines
-
-
-def watch(
-    args: argparse.Namespace, task: Task, lay_out: LayOut, shape: Shape, record: Recorder | None
-) -> EmulationResult:
-    """Runs one shape in step with the wall clock, or slower, and shows it."""
-    console = Console()
-    started = time.monotonic()
-    emulation = lay_out(shape)
-    told = [0] * len(emulation.array)
-    with emulation.array, observe(emulation, args) as on_slice, ExitStack() as stack:
-        live = stack.enter_context(Live(console=console, auto_refresh=False)) if console.is_terminal else None
-
-        def show(running: Emulation, heard: list[Heard]) -> None:
-            on_slice()
-            if record is not None:
-                record.write(_record_line(shape, line) for line in heard)
-            if live is not None:
-                picture = beside([take_picture(running)], console, console.width, console.height)
-                live.update(picture, refresh=True)
-                time.sleep(max(0.0, started + running.array.time_s - time.monotonic()))
-            else:
-                _tell_changes(running, told)
-
-        emulation.run(show)
-        return _result(args, emulation, task, started)
-
-
-def _tell_changes(emulation: Emulation, told: list[int]) -> None:
-    """One plain line for every change of a display, for what is not a terminal."""
-    news = []
-    for tile in emulation.array:
-        changes = tile.display_changes[told[tile.index] :]
-        told[tile.index] += len(changes)
-        # A tile sets its segments one by one: of what it shows within a millisecond only the last counts.
-        for following, change in enumerate(changes, start=1):
-            if following == len(changes) or changes[following].time_s - change.time_s > SETTLING_S:
-                news.append((change.time_s, tile.index, change.segments))
-    for time_s, index, segments in sorted(news):
-        shown = emulation.label(segments) or "nothing"
-        print(f"{time_s:8.3f} s  {emulation.shape.name}: tile {index + 1} shows {shown}")
+        return result_of(args, emulation, task, started), lines
 
 
 def print_results(args: argparse.Namespace, results: Sequence[EmulationResult]) -> None:

@@ -8,6 +8,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
         "tilenca train --shapes my-shapes.toml --out models/mine --recipe quick",
         "tilenca train --shapes my-shapes.toml --out models/mine --seeds 2 --resume",
     ),
+    "runs": ("tilenca runs", "tilenca runs models build/models --plot runs.png"),
     "evaluate": ("tilenca evaluate --model models/mine", "tilenca evaluate --size 9x7 --loss 0.2"),
     "sweep": (
         "tilenca sweep --axis loss=0:0.6:0.1 --runs 20 --out build/loss",
@@ -23,7 +24,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     ),
     "page": ("tilenca page", "tilenca page --shapes my-shapes.toml --no-open"),
     "devices": ("tilenca devices", "tilenca devices --port '/dev/ttyACM*' --json"),
-    "flash": ("tilenca flash", "tilenca flash --only 7 --force"),
+    "flash": ("tilenca flash --model models/mine", "tilenca flash --only 7 --force"),
     "set": ("tilenca set brightness 40", "tilenca set period 40 --tile 7"),
     "monitor": ("tilenca monitor --record evening.jsonl", "tilenca monitor --replay evening.jsonl --speed 4"),
 }

@@ -1,6 +1,7 @@
 """`tilenca flash`: one firmware image into many boards side by side; skips boards that run it already."""
 
 import argparse
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,8 +9,10 @@ from pathlib import Path
 from tilenca.base import paths
 from tilenca.base.errors import NoDeviceError
 from tilenca.base.project import firmware_image
+from tilenca.base.shipped import model_folder
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_fleet_arguments, count, positive
+from tilenca.commands.own_firmware import image_to_write
 from tilenca.fleet.avrdude import Avrdude, Progress, find_avrdude
 from tilenca.fleet.boards import Board, Found, find_fleet, tile_numbers
 from tilenca.fleet.build import build
@@ -30,7 +33,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     add_fleet_arguments(parser)
     parser.add_argument("--jobs", type=count, metavar="N", help="boards at a time (default: all)")
-    parser.add_argument("--hex", type=Path, metavar="F", help="write this Intel HEX image; nothing is built")
+    image = parser.add_mutually_exclusive_group()
+    image.add_argument(
+        "--model",
+        type=model_folder,
+        metavar="DIR",
+        help="write the firmware of this model, built beside its files (the project's own firmware)",
+    )
+    image.add_argument("--hex", type=Path, metavar="F", help="write this Intel HEX image; nothing is built")
     parser.add_argument("--no-build", action="store_true", help="write the image that is there")
     parser.add_argument("--force", action="store_true", help="write it to tiles that already run it, too")
     parser.add_argument("--only", metavar="TILES", help="only these tiles, such as 3,7,9-12")
@@ -162,7 +172,8 @@ def run(args: argparse.Namespace) -> int:
     if all(row.result in GOOD for row in everything):
         return 0
     ports = ", with the same --port" if args.port else ""
-    warn(f"to try again those that failed or were missing: tilenca flash --failed{ports}")
+    model = f" --model {shlex.quote(str(args.model))}" if args.model else ""
+    warn(f"to try again those that failed or were missing: tilenca flash --failed{model}{ports}")
     return 1
 
 
@@ -186,6 +197,8 @@ def _image(args: argparse.Namespace) -> Image:
     """The image to write: built if necessary, and checked before a board is touched."""
     if args.hex:
         return check_image(args.hex)
+    if args.model:
+        return check_image(image_to_write(args.model, not args.no_build).with_suffix(".hex"))
     if paths.PROJECT is not None and not args.no_build:
         build()
     return check_image(firmware_image().with_suffix(".hex"))

@@ -7,23 +7,39 @@ import shlex
 import shutil
 import subprocess
 import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from textwrap import fill
+from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.project import project
 from tilenca.base.shipped import shapes_file
 from tilenca.base.stdio import warn
-from tilenca.commands import emulate, train
-from tilenca.commands.arguments import Parser, count, seed, whole
+from tilenca.commands import emulate
+from tilenca.commands.arguments import Parser
+from tilenca.commands.emulate_runs import EmulationResult
+from tilenca.commands.origin import without_a_dash
 from tilenca.commands.own_firmware import build_beside
-from tilenca.commands.train_plan import TrainingPlan, make_plan
-from tilenca.model.file import checkpoints, load_model
-from tilenca.training.recipes import RECIPES
+from tilenca.commands.train import judged
+from tilenca.commands.train_options import add_training_arguments
+from tilenca.commands.train_plan import TrainingPlan, check_out, doubts, make_plan
+from tilenca.commands.train_steps import at_once, jobs_of, train_model
+from tilenca.model import cost
+from tilenca.model.file import Model, checkpoint_path, checkpoints, load_model
+from tilenca.training.device import check_device
+from tilenca.training.tensorboard import check_tensorboard
 from tilenca.views.abilities import abilities
+from tilenca.views.progress import Tell
+from tilenca.views.steps import Steps, show_steps
 
-STEPS = 4
-AROUND_S, AROUND_TILES = 90.0, 50  # to measure, build and emulate so many tiles, in round numbers
+CHECK, TRAIN, MEASURE, BUILD, EMULATE = STEPS = "check", "train", "measure", "build", "emulate"
+# How long steps take on two cores, in round numbers, until their own pace says it better.
+MEASURE_S, BUILD_S, EMULATE_S = 40.0, 30.0, 10.0
+MEASURED_RUNS, MEASURED_TILES = 100, 50  # of MEASURE_S; EMULATE_S is for so many tiles, too
+NOTE_WIDTH = 79
 TIMED_STEPS = 3  # iterations that are timed before the training begins
 
 
@@ -38,56 +54,142 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="the model's folder, firmware included (models/ and FILE's name)",
     )
-    parser.add_argument(
-        "--recipe", default="quick", metavar="NAME", help=f"one of: {' '.join(RECIPES)} (quick)"
-    )
-    parser.add_argument("--seed", type=seed, default=1, metavar="N", help="same seed, same model (1)")
-    parser.add_argument(
-        "--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)"
-    )
-    parser.add_argument("--hidden", type=whole(1, 127), metavar="H", help="width of both hidden layers")
-    parser.add_argument(
-        "--force", action="store_true", help="train anew, over the model that is in the folder"
-    )
+    add_training_arguments(parser, "quick")
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON document")
 
 
 def run(args: argparse.Namespace) -> int:
     """Checks, trains, builds and emulates; 1 when too few targets hold, or a tile ends up wrong."""
     project()  # before minutes of training
-    out: Path = args.out or Path("models") / args.shapes.stem
-    _refuse_shipped(out)
-    words = _training_words(args, out)
-    parsed = _parsed(train, words)
-    plan = make_plan(parsed)
-    warn(
-        _step(
-            1, f"{len(plan.task)} drawings of {len(plan.task.labels)} classes: {' '.join(plan.task.labels)}"
+    _complete(args)
+    _refuse_shipped(args.out)
+    plan = make_plan(args)
+    check_device(args.device)
+    if args.tensorboard:
+        check_tensorboard()
+    fits = cost.check(plan.dimensions, len(plan.task.labels))
+    done = _is_trained(args, plan)
+    if not done:
+        _check_unfinished(args, plan)
+        check_out(args, plan)
+    with show_steps(STEPS, TRAIN) as steps:
+        _check(args, plan, fits, done, steps)
+        status = 0 if done else _train(args, plan, steps)
+        model = load_model(args.out)
+        steps.begin(BUILD)
+        image = build_beside(model, args.out, args.force, quiet=True)
+        steps.end(BUILD, f"firmware of model {model.model_id:04X}")
+        emulating = _parsed(emulate, ["--model", str(args.out), *(["--json"] if args.json else [])])
+        results = _emulated(emulating, steps)
+    metrics = json.loads((args.out / "metrics.json").read_text(encoding="utf-8"))
+    if args.json:
+        print(json.dumps(_document(args, model, image, metrics, results)))
+        right = all(result.report["all_right"] for result in results)
+        return max(status, judged(args.recipe, metrics), 0 if right else 1)
+    status = max(status, emulate.tell_results(emulating, results))
+    _tell(args, model, metrics)
+    return max(status, judged(args.recipe, metrics))
+
+
+def _complete(args: argparse.Namespace) -> None:
+    """Adds what a training takes and this command decides."""
+    args.shapes = [args.shapes]
+    args.out = args.out or Path("models") / args.shapes[0].stem
+    args.resume = not args.force and bool(checkpoints(args.out))
+
+
+def _check_unfinished(args: argparse.Namespace, plan: TrainingPlan) -> None:
+    """Refuses to go on with the seed of another run."""
+    if args.resume and not any(checkpoint_path(args.out, number).exists() for number in plan.seeds):
+        raise UsageError(
+            f"{args.out}: holds an unfinished run of another seed; give another --out, or "
+            "--force to start anew"
         )
-    )
-    status = 0
-    if _is_trained(args, plan, out):
-        warn(_step(2, f"{out} was trained on this file already; --force trains it anew"))
-    else:
-        warn(_step(2, f"training; {_estimate(plan)}"))
-        status = train.run(parsed)
-    model = load_model(out)
-    for line in abilities(json.loads((out / "metrics.json").read_text(encoding="utf-8"))):
-        print(line)
-    warn(_step(3, f"building the firmware of model {model.model_id:04X}, about a minute the first time"))
-    image = build_beside(model, out)
-    warn(_step(4, "emulating every drawing"))
-    place = shlex.quote(str(out))
-    status = max(status, emulate.run(_parsed(emulate, ["--model", str(out)])))
-    print(f"model and firmware in {out}; the digits that ship are as they were: tilenca emulate")
-    warn(
-        f"next: tilenca emulate --model {place} --watch --seconds 10, or for real tiles "
-        f"tilenca flash --hex {shlex.quote(str(image.with_suffix('.hex')))}"
-    )
-    return status
 
 
-def _step(number: int, what: str) -> str:
-    return f"[{number}/{STEPS}] {what}"
+def _check(args: argparse.Namespace, plan: TrainingPlan, fits: cost.Fit, done: bool, steps: Steps) -> None:
+    """Says what to know of the drawings, and how long all of it will take."""
+    steps.begin(CHECK)
+    for note in doubts(plan):
+        warn(note)
+    if not fits.fits_period:
+        warn(str(fits))
+    tiles = int(plan.task.sizes.sum()) / MEASURED_TILES
+    steps.expect(BUILD, BUILD_S)
+    steps.expect(EMULATE, EMULATE_S * max(1.0, tiles))
+    if not done:
+        steps.expect(MEASURE, MEASURE_S * max(1.0, tiles) * plan.validation_runs / MEASURED_RUNS)
+        steps.expect(TRAIN, _expected_s(args, plan))
+    labels = plan.task.labels
+    steps.end(CHECK, f"{len(plan.task)} drawings of {len(labels)} classes: {' '.join(labels)}")
+    if done:
+        steps.end(TRAIN, "trained on this file before; --force trains anew")
+        steps.end(MEASURE, f"{args.out / 'README.md'}")
+
+
+def _train(args: argparse.Namespace, plan: TrainingPlan, steps: Steps) -> int:
+    """Trains and measures a model; 1 where the folder kept a better one."""
+    steps.begin(TRAIN)
+    made = train_model(
+        args, plan, steps.training_views(TRAIN, MEASURE), "to go on, run the same command again"
+    )
+    steps.end(MEASURE, f"{made.metrics['targets_held']} targets held")
+    return 0 if made.folder == args.out else 1
+
+
+def _emulated(args: argparse.Namespace, steps: Steps) -> list[EmulationResult]:
+    """Emulates every drawing."""
+    steps.begin(EMULATE)
+
+    @contextmanager
+    def shown() -> Iterator[Tell]:
+        shares: dict[str, float] = {}
+
+        def tell(name: str, share: float, note: str) -> None:
+            shares[name] = share
+            words = ", ".join(f"{name} {share:.0%}" for name, share in shares.items() if share < 1.0)
+            steps.move(EMULATE, words)
+
+        yield tell
+
+    results = emulate.emulate_model(args, shown)
+    right = sum(result.report["all_right"] for result in results)
+    steps.end(EMULATE, f"{right} of {len(results)} drawings right")
+    return results
+
+
+def _tell(args: argparse.Namespace, model: Model, metrics: dict[str, Any]) -> None:
+    """Prints what the model can do, where it is, and what to type next."""
+    place = shlex.quote(str(args.out))
+    notes = [*abilities(metrics), *filter(None, [without_a_dash(model)])]
+    print(f"model {model.model_id:04X} in {place}, firmware included: {metrics['targets_held']} targets held")
+    for note in notes:
+        print(fill(note, NOTE_WIDTH, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
+    for what, then in (
+        ("next, watch them", f"tilenca emulate --model {place} --watch"),
+        ("for real tiles", f"tilenca flash --model {place}"),
+        ("all measurements", str(args.out / "README.md")),
+        ("the digits again", "tilenca emulate"),
+    ):
+        warn(f"{what}: {then}")
+
+
+def _document(
+    args: argparse.Namespace,
+    model: Model,
+    image: Path,
+    metrics: dict[str, Any],
+    results: list[EmulationResult],
+) -> dict[str, Any]:
+    """The result as plain values."""
+    return {
+        "model": str(args.out),
+        "model_id": f"{model.model_id:04X}",
+        "image": str(image),
+        "metrics": metrics,
+        "runs": [result.report for result in results],
+        "all_right": all(result.report["all_right"] for result in results),
+    }
 
 
 def _refuse_shipped(out: Path) -> None:
@@ -110,66 +212,49 @@ def _parsed(command: object, words: list[str]) -> argparse.Namespace:
     return parsed
 
 
-def _training_words(args: argparse.Namespace, out: Path) -> list[str]:
-    words = [
-        "--shapes",
-        str(args.shapes),
-        "--out",
-        str(out),
-        "--recipe",
-        args.recipe,
-        "--seed",
-        str(args.seed),
-    ]
-    for name in ("iterations", "hidden"):
-        if getattr(args, name) is not None:
-            words += [f"--{name}", str(getattr(args, name))]
-    if args.force:
-        words += ["--force"]
-    elif checkpoints(out):
-        words += ["--resume"]
-    return words
-
-
-def _is_trained(args: argparse.Namespace, plan: TrainingPlan, out: Path) -> bool:
+def _is_trained(args: argparse.Namespace, plan: TrainingPlan) -> bool:
     """Whether the folder has the model that this training would make.
 
     Raises:
         UsageError: it has another model.
     """
-    if args.force or checkpoints(out) or not (out / "model.json").exists():
+    if args.force or checkpoints(args.out) or not (args.out / "model.json").exists():
         return False
-    model = load_model(out)
+    model = load_model(args.out)
     metadata = model.metadata
     there = (
-        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), metadata.get("seed"),
+        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), _seeds(metadata),
         metadata.get("recipe", {}).get("iterations"), model.dimensions,
     )  # fmt: skip
-    sha256 = hashlib.sha256(args.shapes.read_bytes()).hexdigest()
-    if there == (sha256, args.recipe, args.seed, plan.recipe.iterations, plan.dimensions):
+    sha256 = hashlib.sha256(args.shapes[0].read_bytes()).hexdigest()
+    if there == (sha256, args.recipe, plan.seeds, plan.recipe.iterations, plan.dimensions):
         return True
     raise UsageError(
-        f"{out}: holds a model of another file, recipe, seed or size; give another --out, or --force to "
+        f"{args.out}: holds a model of another file, recipe, seed or size; give another --out, or --force to "
         "replace it"
     )
 
 
-def _estimate(plan: TrainingPlan) -> str:
-    """How long the training takes at most, from some iterations on this machine."""
-    from tilenca.base.processors import processors
-    from tilenca.training.runner import Job, make_trainer
-    from tilenca.training.trainer import Config
+def _seeds(metadata: Mapping[str, Any]) -> tuple[int, ...]:
+    """The seeds of which a model is the best one, by the command that made it."""
+    words = shlex.split(str(metadata.get("command", "")))
+    first, count = (
+        int(words[words.index(option) + 1]) if option in words else 0 for option in ("--seed", "--seeds")
+    )
+    return tuple(range(first, first + count))
 
-    config = Config(plan.recipe, plan.dimensions, plan.seeds[0], plan.task.labels, plan.task.sources)
-    threads = max(1, processors() // min(processors(), len(plan.seeds)))
-    trainer = make_trainer(Job(config, plan.task, plan.sizes, "cpu", Path(), False, threads))
+
+def _expected_s(args: argparse.Namespace, plan: TrainingPlan) -> float:
+    """How long the training takes at most, from some iterations on this machine."""
+    from tilenca.training.runner import make_trainer
+
+    trainer = make_trainer(jobs_of(args, plan)[0])
+    left = plan.recipe.iterations - trainer.iteration
+    if left <= TIMED_STEPS:
+        return 0.0
     trainer.step()  # the first one takes longer
-    began_s, timed = time.perf_counter(), max(1, min(TIMED_STEPS, plan.recipe.iterations - 1))
-    for _ in range(timed):
+    began_s = time.perf_counter()
+    for _ in range(TIMED_STEPS):
         trainer.step()
-    each_s = (time.perf_counter() - began_s) / timed
-    seeds = -(-len(plan.seeds) // processors())
-    minutes = each_s * plan.recipe.iterations * seeds / 60
-    around_s = AROUND_S * max(1.0, int(plan.task.sizes.sum()) / AROUND_TILES)
-    after = f"then about {around_s / 60:.1f} min to measure, build and emulate"
-    return f"at most about {max(1, round(minutes))} min, less if the targets hold early; {after}"
+    each_s = (time.perf_counter() - began_s) / TIMED_STEPS
+    return each_s * left * -(-len(plan.seeds) // at_once(args, plan))

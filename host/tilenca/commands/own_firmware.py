@@ -6,22 +6,25 @@ from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
-from tilenca.base.project import firmware_image, project
+from tilenca.base.project import build_remedy, firmware_image, project
+from tilenca.commands.arguments import existing_image
+from tilenca.emulator.greeting import greeting
 from tilenca.fleet.build import build
-from tilenca.model.file import Model
+from tilenca.model.file import Model, load_model
 from tilenca.model.render import check_fits, render, write_files
 
 PARTS = ("include", "src")
 RENDERED = "model"  # the folder of both parts that `render` fills
 
 
-def build_beside(model: Model, folder: Path, force: bool = False) -> Path:
+def build_beside(model: Model, folder: Path, force: bool = False, quiet: bool = False) -> Path:
     """Builds a model's firmware in its folder; returns the image. What is up to date is not built again.
 
     Args:
         model: to build in.
         folder: of the model.
         force: overwrite rendered files that were edited by hand.
+        quiet: do not say that it builds.
 
     Raises:
         BuildError: the model does not fit, there is no project, or the build failed.
@@ -33,7 +36,7 @@ def build_beside(model: Model, folder: Path, force: bool = False) -> Path:
     except OSError as error:
         raise BuildError(f"{error.filename or out}: {error.strerror}; make {folder} writable") from error
     write_files(out, render(model), force)
-    build(out)
+    build(out, quiet)
     return paths.model_elf(folder)
 
 
@@ -41,14 +44,38 @@ def image_of(folder: Path) -> Path:
     """The image that was built beside a model.
 
     Raises:
-        BuildError: none was built yet; the message says how.
+        BuildError: none was built yet, or of the digits the project's own firmware has another model; the
+            message says how to build one.
     """
     image = paths.model_elf(folder)
     if image.exists():
         return image
-    if folder.resolve() == paths.DEFAULT_MODEL.resolve():  # the project's own firmware has it
-        return firmware_image()
-    raise BuildError(f"{folder}: no firmware was built of it; run: tilenca export --model {folder} --build")
+    remedy = f"run: tilenca export --model {folder} --build"
+    if folder.resolve() != paths.DEFAULT_MODEL.resolve():
+        raise BuildError(f"{folder}: no firmware was built of it; {remedy}")
+    image = firmware_image()
+    existing_image(image, build_remedy())
+    hello, model_id = greeting(image), load_model(folder).model_id
+    if hello is None or hello.model_id != model_id:
+        other = "no model" if hello is None else f"model {hello.model_id:04X}"
+        raise BuildError(f"{image}: has {other}, not {model_id:04X} of {folder}; {remedy}")
+    return image
+
+
+def image_to_write(folder: Path, building: bool = True) -> Path:
+    """The image of a model for real tiles, brought up to date beside the model's files where it can be.
+
+    Args:
+        folder: of the model.
+        building: whether to build; else what was built is taken as it is.
+
+    Raises:
+        BuildError: as `build_beside` and `image_of`.
+    """
+    installed = paths.CHECKOUT is None and folder.resolve().is_relative_to(paths.MODELS.resolve())
+    if not building or installed or paths.PROJECT is None:
+        return image_of(folder)
+    return build_beside(load_model(folder), folder)
 
 
 def _copy_sources(sources: Path, out: Path) -> None:

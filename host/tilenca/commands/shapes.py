@@ -2,8 +2,11 @@
 
 import argparse
 import json
+import shlex
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -14,6 +17,7 @@ from tilenca.base.shipped import shapes_file, shapes_names
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import number, seed, size, whole
 from tilenca.model.file import DEFAULT_CHANNELS, Dimensions
+from tilenca.shapes.advice import advice
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.file import Shape, Task, load_task, shape_table, too_large
 from tilenca.shapes.glyphs import GLYPHS, SEGMENT_NAMES
@@ -22,8 +26,10 @@ from tilenca.shapes.sizes import LARGEST, Size
 from tilenca.shapes.stretch import Rows
 from tilenca.shapes.variant import LAST, TRAINED
 from tilenca.views.drawings import half_blocks, side_by_side
+from tilenca.views.tiles import digit
 
 IMAGE_ROWS = 10
+DIGIT_WIDTH, DIGIT_GAP = 3, "  "
 INK = (0.5, 0.4, 0.3, 0.2, 0.12)  # least part of a tile that is ink, as far as needed
 MOST_DROPPED = 0.05  # of the drawing's tiles may be left out, before less ink will do
 
@@ -96,7 +102,11 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(shape_table(label, rows) for label, some in variants.items() for rows in some))
         return 0
     if args.json:
-        report: dict[str, Any] = {"shapes": [_entry(shape) for shape in task.shapes], "problems": problems}
+        report: dict[str, Any] = {
+            "shapes": [_entry(shape) for shape in task.shapes],
+            "problems": problems,
+            "advice": list(advice(task)),
+        }
         if args.vary:
             report["variants"] = {
                 label: ["\n".join(rows) for rows in some] for label, some in variants.items()
@@ -111,9 +121,25 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(side_by_side([("", rows) for rows in some], width)))
     drawn = f"{len(task.shapes)} drawing{'s' * (len(task.shapes) > 1)}"
     print(f"{drawn} of {len(task.labels)} class{'es' * (len(task.labels) > 1)}: {' '.join(task.labels)}")
+    print(f"tiles will show\n{_displays(task.labels, width)}")
+    for sentence in advice(task):
+        print(fill(sentence, width, subsequent_indent="  ", break_long_words=False))
     for problem in problems:
         print(problem)
+    if not problems and args.shapes.suffix == ".toml" and args.shapes.parent != paths.SHAPES:
+        warn(f"next: tilenca make {shlex.quote(str(args.shapes))}")
     return 0
+
+
+def _displays(labels: Sequence[str], width: int) -> str:
+    """The labels as the tiles' digits, as many beside each other as there is room for."""
+    each = max(1, width // (DIGIT_WIDTH + len(DIGIT_GAP)))
+    rows = [labels[first : first + each] for first in range(0, len(labels), each)]
+    return "\n".join(
+        DIGIT_GAP.join(part).rstrip()
+        for row in rows
+        for part in zip(*(digit(GLYPHS[label]) for label in row), strict=True)
+    )
 
 
 def _image(args: argparse.Namespace) -> int:

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
+from rich.console import Console, Group
 from rich.live import Live
+from rich.text import Text
 
 from tilenca.base.errors import UsageError
 from tilenca.base.processors import processors
@@ -37,7 +38,7 @@ from tilenca.simulator.rollout_library import DARK
 from tilenca.simulator.simulator import Simulator
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.table import table
-from tilenca.views.tiles import Picture, beside
+from tilenca.views.tiles import Picture, fitting
 
 DEFAULT_STEPS = 60
 RUNS = 100
@@ -247,7 +248,12 @@ def _watch(simulator: Simulator, shape: Shape, labels: tuple[str, ...], steps: i
             right = float(simulator.run(1).right[0, 0])
             if live is not None:
                 picture = picture_of(shape, labels, simulator.shown)
-                live.update(beside([picture], console, console.width, console.height), refresh=True)
+                ascii_only, room = console.options.ascii_only, console.height - 2
+                tiles = fitting(picture, console.width, room, ascii_only, labels)
+                caption = Text(
+                    f"{shape.name}: {right:.0%} of the tiles show {shape.label}   step {step}", "bold"
+                )
+                live.update(Group(*tiles, caption), refresh=True)
                 time.sleep(max(0.0, started_s + step * STEP_S - time.monotonic()))
             else:
                 for tile in np.flatnonzero(simulator.shown != before):

@@ -1,6 +1,7 @@
 """The plan of `tilenca train`: the training that the arguments ask for, and whether it can begin."""
 
 import argparse
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -111,35 +112,38 @@ def _check_variants(path: Path, task: Drawings) -> None:
             variants.some(label, 1, random, path)
 
 
-def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
-    """Prints the plan, the cost on a tile, and the drawings that look alike when damaged."""
-    warn(str(fits))
+def doubts(plan: TrainingPlan) -> Iterator[str]:
+    """What to know of the drawings and the recipe before a training, a line each."""
     if plan.recipe.unknown and UNKNOWN not in plan.task.labels:
-        warn(
+        yield (
             f"note: {len(plan.task.labels)} classes leave the state no room for a dash; with a wider --state "
             "tiles would learn to say that they do not know"
         )
     if plan.recipe.damaged and len(plan.task) <= FEW:
         known = known_of(plan.task.shapes)
-        doubts = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
-        if doubts:
-            warn(f"note: with the wrong tile missing one looks like another: {', '.join(doubts)}")
+        alike = [f"{label} like {' '.join(others)}" for label, others in known.lookalikes().items()]
+        if alike:
+            yield f"note: with the wrong tile missing one looks like another: {', '.join(alike)}"
     if plan.recipe.varied and plan.task.variants is None:
-        warn("note: drawings with areas, or with vary = false, have no forms: they alone are trained on")
+        yield "note: drawings with areas, or with vary = false, have no forms: they alone are trained on"
     if plan.recipe.varied == 0 and plan.varies:
-        warn("note: this recipe trains on the drawings alone; only --recipe forms heeds [vary] and [forms]")
+        yield "note: this recipe trains on the drawings alone; only --recipe forms heeds [vary] and [forms]"
+
+
+def announce(plan: TrainingPlan, fits: cost.Fit) -> None:
+    """Prints the cost on a tile, what to know of the drawings, and the plan."""
+    warn(str(fits))
+    for doubt in doubts(plan):
+        warn(doubt)
     warn(
         f"training {plan.recipe.iterations} iterations on {len(plan.task)} drawings of "
         f"{len(plan.task.labels)} classes, {len(plan.seeds)} seed{'s' * (len(plan.seeds) > 1)}; Ctrl-C keeps "
         "a checkpoint"
     )
-    met = (
-        "; after each short measurement also how many targets of the model card are met, and by how much the "
-        "others fall short, added up: 0.01 is 1 % of the runs of one target"
-    )
+    met = "; how many targets of the model card are met, and by how much the others fall short, added up"
     warn(
-        "progress: the share of drawings with every tile right, on a terminal also the loss and iterations "
-        f"per second{met if plan.recipe.check_every else ''}; without a terminal a line a minute"
+        f"progress: the share of drawings with every tile right{met if plan.recipe.check_every else ''}; "
+        "without a terminal a line a minute"
     )
 
 

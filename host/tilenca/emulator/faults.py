@@ -250,6 +250,14 @@ class Faults:
             (self.array.mend if on else self.array.cut)(*end)
             (self.cut.discard if on else self.cut.add)(end)
 
+    def plug(self, tile: int, on: bool) -> None:
+        """Takes a tile out, with its cables and its power, or plugs it in again."""
+        for tile_a, side_a, tile_b, side_b in self.links:
+            for mine, end in ((tile_a, (tile_a, side_a)), (tile_b, (tile_b, side_b))):
+                if mine == tile:
+                    self.connect(end, on)
+        self._power(tile, on)
+
     def _power(self, tile: int, on: bool) -> None:
         self.array[tile].powered = on
         if on:

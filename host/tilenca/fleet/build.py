@@ -15,11 +15,12 @@ from tilenca.base.signals import held_back
 from tilenca.base.stdio import warn
 
 
-def build(sources: Path | None = None) -> None:
+def build(sources: Path | None = None, quiet: bool = False) -> None:
     """Builds the project's firmware unless it is up to date. Shows the build's output only if it fails.
 
     Args:
         sources: a folder with `include` and `src` to build instead of the project's, in its folder `build`.
+        quiet: do not say that it builds.
 
     Raises:
         BuildError: there is no project, PlatformIO is missing, or the build failed.
@@ -31,7 +32,8 @@ def build(sources: Path | None = None) -> None:
         raise BuildError(
             f"PlatformIO is not installed; run: {install_remedy('firmware')}, or name an image with --hex"
         )
-    warn("building the firmware")
+    if not quiet:
+        warn("building the firmware")
     command = [pio, "run", "-e", paths.FIRMWARE_ENV]
     elsewhere = {
         f"PLATFORMIO_{part.upper()}_DIR": str(sources.resolve() / part)

@@ -49,6 +49,7 @@ class Reporter:
         self._links: dict[str, str] = {}
         self._failing: set[tuple[str, str]] = set()
         self._foreign: set[tuple[str, str]] = set()
+        self._garbled: set[tuple[str, str]] = set()  # no frame of a neighbour arrives whole
 
     def take(self, event: Event) -> list[News]:
         """The news of an event that the fleet has just taken."""
@@ -71,6 +72,7 @@ class Reporter:
                 self._label[event.port], self._links[event.port] = "", "----"
                 self._failing -= {(event.port, side) for side in SIDES}
                 self._foreign -= {(event.port, side) for side in SIDES}
+                self._garbled -= {(event.port, side) for side in SIDES}
                 return [(f"started: {words(hello)}", False)]
             case TileSentence() as tile:
                 return [*self._label_news(event.port, tile), *self._link_news(event.port, tile)]
@@ -119,7 +121,14 @@ class Reporter:
 
     def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
         health, key = view.health.get(link.side), (port, link.side)
-        good = health.good if health else None
+        if health is None:
+            return []
+        if health.garbled != (key in self._garbled):
+            self._garbled ^= {key}
+            if health.garbled:
+                return [(f"on {link.side} is a tile, but no frame of it arrives whole: check the plug", True)]
+            return [(f"frames from {link.side} are not garbled any more", False)]
+        good = health.good
         if good is None:
             return []
         if good < FAILING and key not in self._failing:

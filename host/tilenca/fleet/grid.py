@@ -163,7 +163,9 @@ def _colour(view: TileView) -> tuple[int, int, int]:
 def _mark(view: TileView, side: str) -> Mark:
     health = view.health.get(side)
     if view.tile is None or side not in view.tile.links:
-        return Mark.FOREIGN if view.tile and health and health.foreign else Mark.NONE
+        if not (view.tile and health):
+            return Mark.NONE
+        return Mark.FOREIGN if health.foreign else Mark.DEAD if health.garbled else Mark.NONE
     good = health.good if health else None
     return Mark.FAILING if good is not None and good < FAILING else Mark.WELL
 

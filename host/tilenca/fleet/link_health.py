@@ -8,6 +8,8 @@ from tilenca.protocol.sentences import LinkSentence
 WINDOW_MS = 10_000
 # A link is well from the first share of arrived frames on; below the second it is failing.
 WELL, FAILING = 0.98, 0.9
+# So many damaged frames in the window, and no whole one, come from a tile; noise makes few.
+GARBLED = 10
 
 
 class LinkHealth:
@@ -41,3 +43,11 @@ class LinkHealth:
     def foreign(self) -> bool:
         """Whether frames of another model came."""
         return len(self._reports) > 1 and self._reports[-1].foreign > self._reports[0].foreign
+
+    @property
+    def garbled(self) -> bool:
+        """Whether there is a tile of which no frame arrives whole, so that nobody knows which one."""
+        if len(self._reports) < 2:
+            return False
+        first, last = self._reports[0], self._reports[-1]
+        return last.received == first.received and last.corrupt - first.corrupt >= GARBLED

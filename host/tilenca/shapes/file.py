@@ -213,7 +213,7 @@ def _label(where: str, table: dict[str, object], labels: list[str]) -> str:
     if not isinstance(label, str) or label not in GLYPHS:
         shown = "missing" if label is None else repr(label)
         quoted = isinstance(label, int) and str(label) in GLYPHS
-        remedy = f'write "{label}", in quotes' if quoted else f"a 7-segment digit shows {''.join(GLYPHS)}"
+        remedy = f'write "{label}", in quotes' if quoted else _other_label(label)
         raise UsageError(f"{where}: label {shown}; {remedy}")
     for other in labels:
         if other != label and GLYPHS[other] == GLYPHS[label]:
@@ -221,6 +221,17 @@ def _label(where: str, table: dict[str, object], labels: list[str]) -> str:
                 f"{where}: labels '{label}' and '{other}' look the same on a 7-segment digit; rename one"
             )
     return label
+
+
+def _other_label(label: object) -> str:
+    """What a label may be, with one that is near the given one where there is any."""
+    shown = f"a 7-segment digit shows {''.join(GLYPHS)}"
+    first = label[:1] if isinstance(label, str) else ""
+    near = next((other for other in (first, first.swapcase()) if other in GLYPHS), None)
+    if isinstance(label, str) and len(label) > 1:
+        such = f", such as '{near}'" if near else ""
+        return f"it is the one character that the tiles are to show{such}; {shown}"
+    return f"did you mean '{near}'? {shown}" if near else shown
 
 
 def _rows(where: str, grid_where: str, grid_line: int, label: str, grid: object) -> tuple[str, ...]:

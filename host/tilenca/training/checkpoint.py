@@ -33,25 +33,41 @@ def store_checkpoint(path: Path, data: bytes | memoryview) -> None:
     write_whole(path, data, "make room there, or give another --out")
 
 
+def glance(path: Path) -> State:
+    """The plain values of a checkpoint, of any configuration: `config`, `iteration`, `history`, `checks`.
+
+    Raises:
+        UsageError: there is none, or it is damaged.
+    """
+    state = _load(path, torch.device("cpu"))
+    return {name: state[name] for name in ("config", "iteration", "history", "checks")}
+
+
 def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
     """The state that was written, its tensors on `device`.
 
     Raises:
         UsageError: there is none, it is damaged, or of another configuration.
     """
-    try:
-        state: State = torch.load(path, map_location=device, weights_only=True)
-        theirs: State = state["config"]
-    except FileNotFoundError as error:
-        raise UsageError(f"{path}: nothing to resume; train without --resume") from error
-    except Exception as error:  # any exception of torch's unpickler
-        raise UsageError(
-            f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
-        ) from error
+    state = _load(path, device)
+    theirs: State = state["config"]
     for key, value in config.items():
         if theirs.get(key) != value:
             raise UsageError(
                 f"{path}: made with another {key}; give the arguments of the run to resume, or train "
                 "into another directory"
             )
+    return state
+
+
+def _load(path: Path, device: torch.device) -> State:
+    try:
+        state: State = torch.load(path, map_location=device, weights_only=True)
+        state["config"], state["iteration"]
+    except FileNotFoundError as error:
+        raise UsageError(f"{path}: nothing to resume; train without --resume") from error
+    except Exception as error:  # any exception of torch's unpickler
+        raise UsageError(
+            f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
+        ) from error
     return state

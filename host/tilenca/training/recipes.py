@@ -273,3 +273,12 @@ def find_recipe(name: str) -> Recipe:
 def aims_of(recipe: Recipe) -> Aims:
     """The aims of a recipe."""
     return Aims(recipe.stretch, recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0)
+
+
+def trains_for(recipe: Recipe, key: str) -> bool:
+    """Whether a recipe trains for the measurements of this key.
+
+    To give one answer on any drawing, tiles need drawings beside those of the classes; the suite asks
+    all models for it.
+    """
+    return key != "one answer" or recipe.unknown > 0 or recipe.unlabelled > 0

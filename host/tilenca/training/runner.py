@@ -25,7 +25,7 @@ from tilenca.shapes.variant import CHOOSING
 from tilenca.simulator.engine import FastEngine
 from tilenca.training.curriculum import build
 from tilenca.training.progress import Progress, Tell
-from tilenca.training.recipes import aims_of
+from tilenca.training.recipes import aims_of, trains_for
 from tilenca.training.rollout import use_threads
 from tilenca.training.trainer import Config, Trained, Trainer, model_of
 
@@ -38,6 +38,7 @@ ENDING = (signal.SIGINT, *SIGNALS)
 SAVING = (
     "keeps a checkpoint once this iteration, or a measurement after it, is done; Ctrl-C again ends without"
 )
+WITHOUT = "ends without another checkpoint, as soon as the step at work is done"
 
 
 @dataclass(frozen=True)
@@ -144,13 +145,17 @@ def _suite(job: Job) -> Suite:
 
 
 def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
-    """A short measurement; ends the training when all targets held several times in a row."""
+    """A short measurement; ends the training when all targets held several times in a row.
+
+    What the recipe does not train for does not count: it would never hold, and no training would end early.
+    """
     model, _ = model_of(trainer.now(), {})
     for runs in (CHECK_RUNS, CLOSER_RUNS):
-        rows = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
+        measured = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
+        rows = [row for row in measured if trains_for(trainer.config.recipe, row.key)]
         if shortfall := sum(row.shortfall for row in rows):
             break
-    shares = {row.key: min(other.share for other in rows if other.key == row.key) for row in rows}
+    shares = {row.key: min(other.share for other in measured if other.key == row.key) for row in measured}
     trainer.measured(shortfall, shares)
     last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
     trainer.ended = len(last) == HOLDS_TO_END and not any(last)
@@ -287,7 +292,7 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
     heeded = [n for n in ENDING if n == signal.SIGINT or signal.getsignal(n) is not signal.SIG_IGN]
     before = {number: signal.signal(number, note) for number in heeded}
     try:
-        with promising(SAVING):
+        with promising(SAVING, WITHOUT):
             yield lambda: bool(caught)
     finally:
         for number, handler in before.items():

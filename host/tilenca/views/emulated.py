@@ -46,7 +46,7 @@ def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str
             f"{name}: {tiles} {emulation.shape.label}, since {agreed_s:.2f} s after the last was switched on"
             f"{updated} (update {emulation.agreed_at_update()})"
         )
-    shown = _counted(emulation)
+    shown = counted(emulation)
     if judge(emulation, expected) == NOT_YET:
         done, late = emulation.fewest_updates(), emulation.without_update()
         since = f"{shown} after {done} updates"
@@ -64,7 +64,7 @@ def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str
     return text
 
 
-def _counted(emulation: Emulation) -> str:
+def counted(emulation: Emulation) -> str:
     """How many tiles show what, like `26 of 28 tiles show 4, 2 a dash`."""
     answers = Counter(emulation.answers())
     right = answers.pop(emulation.shape.label, 0)

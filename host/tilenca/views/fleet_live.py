@@ -94,7 +94,8 @@ class LiveView:
             ", ".join(f"{count} show {label or 'nothing'}" for label, count in shown.most_common()),
             *(f"{count} {what}" for what, count in Counter(c.trouble for c in cells if c.trouble).items()),
             f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
-            f"{sum(view.damaged for view in views)} damaged",
+            _counted(sum(view.damaged for view in views), "damaged line"),
+            _counted(sum(view.total("corrupt") or 0 for view in views), "corrupt frame"),
             self._about or clock_text(self._now_s)[:-4],
         ]
         return Text("  ".join(filter(None, parts)), style="bold")
@@ -102,6 +103,11 @@ class LiveView:
     def _log_line(self, news: News) -> Text:
         # The folder of a port tells nothing, and takes the room of the rest on a narrow terminal.
         return Text(news_line(news, PurePath(news.port).name), "yellow" if news.bad else "")
+
+
+def _counted(count: int, what: str) -> str:
+    """So many of them; nothing where there are none."""
+    return f"{count:,} {what}{'s' * (count != 1)}" if count else ""
 
 
 class _Screen:

@@ -5,16 +5,17 @@ The same data give the same bytes, with any settings of the user's matplotlib.
 
 import errno
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.project import install_remedy
+from tilenca.views.abilities import QUESTIONS
 
 try:
     from matplotlib import style
@@ -27,7 +28,10 @@ except ImportError as error:
         f"plots need matplotlib, which is not installed; run: {install_remedy('plot')}"
     ) from error
 
+# Values in the order of columns; None: not measured there.
+Rows: TypeAlias = Sequence[Sequence[float | None]]
 HISTORY = ("iteration", "loss", "agreement")
+WIDEST, THINNER, THINNEST = 3.2, 0.2, 1.2  # lines: the first, each one after it, and none below
 SMOOTHED = 60  # lines of fewer points are drawn as they are
 
 SUFFIXES = (".png", ".svg")
@@ -124,9 +128,45 @@ def plot_history(
         save(figure, path)
 
 
+def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
+    """Draws loss and agreement of several trainings over each other.
+
+    Args:
+        runs: by the name that stands for each; rows of (iteration, loss, agreement), as of `plot_history`.
+        path: PNG or SVG.
+
+    Raises:
+        UsageError: nothing was trained yet, or what `save` says.
+    """
+    tables = {
+        name: np.array([[math.nan if x is None else x for x in row[:3]] for row in rows], np.float64)
+        for name, rows in runs.items()
+        if len(list(rows))
+    }
+    if not tables:
+        raise UsageError(f"{path}: no training there has a history to draw")
+    with styled():
+        figure = Figure(figsize=(WIDTH_IN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08))
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        figure.suptitle("Trainings", x=0.02, ha="left", fontsize=13, fontweight="bold")
+        for number, (name, table) in enumerate(tables.items()):
+            _draw_line(upper, table[:, 0], table[:, 1], number, name)
+            _draw_line(lower, table[:, 0], table[:, 2], number, name)
+        _as_loss(upper, min(float(np.nanmin(table[:, 1])) for table in tables.values()))
+        _as_agreement(lower)
+        lower.set_ylabel("training samples all right")
+        lower.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, fontsize="small")
+        save(figure, path)
+
+
 def _draw_loss(axes: Axes, iteration: NDArray[np.float64], loss: NDArray[np.float64]) -> None:
     _draw_line(axes, iteration, loss, 0)
-    if np.nanmin(loss, initial=math.inf) > 0:
+    _as_loss(axes, float(np.nanmin(loss, initial=math.inf)))
+
+
+def _as_loss(axes: Axes, least: float) -> None:
+    """A logarithmic axis, unless a loss is 0."""
+    if least > 0:
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -135,12 +175,16 @@ def _draw_loss(axes: Axes, iteration: NDArray[np.float64], loss: NDArray[np.floa
 
 
 def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
-    lines = ["agreement", *(name for name in data if name.startswith("@"))]
-    for number, name in enumerate(lines):
-        label = "training samples" if number == 0 else _question(name[1:])
-        _draw_line(axes, data["iteration"], data[name], number, label)
-    if len(lines) > 1:
+    _draw_line(axes, data["iteration"], data["agreement"], 0, "training samples", INK)
+    measured = sorted((_place(name[1:]), name) for name in data if name.startswith("@"))
+    for place, name in measured:
+        _draw_line(axes, data["iteration"], data[name], place, _question(name[1:]))
+    if measured:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, fontsize="small")
+    _as_agreement(axes)
+
+
+def _as_agreement(axes: Axes) -> None:
     axes.set_ylim(-0.02, 1.02)
     axes.set_ylabel("share with every tile right")
     axes.set_xlabel("iteration")
@@ -149,17 +193,37 @@ def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0%}"))
 
 
+def _place(name: str) -> int:
+    """The number of a kind of measurement, which is the same in the picture of every training."""
+    kinds = list(QUESTIONS)
+    return kinds.index(name) if name in kinds else len(kinds) + (int(name) if name.isdigit() else 0)
+
+
 def _question(name: str) -> str:
     return f"measured after {name} steps" if name.isdigit() else name
 
 
 def _draw_line(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], number: int, label: str | None = None
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    number: int,
+    label: str | None = None,
+    colour: str | None = None,
 ) -> None:
-    """Every point faintly, and their running mean."""
+    """Every point faintly, and their running mean.
+
+    Args:
+        axes: where.
+        x: of the points.
+        y: of the points; those without a number are left out.
+        number: decides colour and dashes; a later line is thinner, so that one beneath it still shows.
+        label: in the legend.
+        colour: another one.
+    """
     known = ~np.isnan(y)
     x, y = x[known], y[known]
-    colour, dashes = LINES[number % len(LINES)], DASHES[number % len(DASHES)]
+    colour, dashes = colour or LINES[number % len(LINES)], DASHES[number % len(DASHES)]
     few = len(x) < SMOOTHED
     if not few:
         axes.plot(x, y, color=colour, linewidth=0.8, alpha=0.3)
@@ -168,7 +232,7 @@ def _draw_line(
         y if few else _smooth(y, len(y) // (SMOOTHED // 2)),
         color=colour,
         linestyle=dashes,
-        linewidth=2,
+        linewidth=max(WIDEST - THINNER * number, THINNEST),
         label=label,
         marker="o" if few else "",
         markersize=4,

@@ -1,16 +1,39 @@
 """How far slow work is: a bar for each piece of it on a terminal's stderr, nothing elsewhere."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TypeAlias
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.progress import BarColumn, Progress, ProgressColumn, TaskID, TextColumn, TimeElapsedColumn
 
 BAR_WIDTH = 24
 
 # Takes the name of the piece, the share of it that is done, and a note; a share of 1 or more ends it.
 Tell: TypeAlias = Callable[[str, float, str], None]
+# What stands above or below the bars, asked for each time that they are drawn.
+Lines: TypeAlias = Callable[[], Sequence[RenderableType]]
+
+
+def nothing() -> Sequence[RenderableType]:
+    """No lines."""
+    return ()
+
+
+class _Framed(Progress):
+    """Bars with lines above and below them."""
+
+    def __init__(
+        self, above: Lines, below: Lines, *columns: ProgressColumn, console: Console, transient: bool
+    ):
+        self._above, self._below = above, below
+        super().__init__(*columns, console=console, transient=transient, disable=not console.is_terminal)
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        """All that is drawn."""
+        yield from self._above()
+        yield from super().get_renderables()
+        yield from self._below()
 
 
 class Bars:
@@ -33,9 +56,17 @@ class Bars:
         self._progress.start_task(task)
         self._progress.update(task, completed=done, note=note)
 
+    def note(self, name: str, note: str) -> None:
+        """Says something of a piece of work, which does not begin by that."""
+        self._progress.update(self._tasks[name], note=note)
+
     def stop(self, name: str) -> None:
         """Its time counts no further."""
         self._progress.stop_task(self._tasks[name])
+
+    def draw(self) -> None:
+        """Draws now, not at the next interval."""
+        self._progress.refresh()
 
     def remove(self, name: str) -> None:
         """Takes the bar away, once its end was seen."""
@@ -49,6 +80,8 @@ def show_bars(
     width: int = BAR_WIDTH,
     time: type[ProgressColumn] | None = TimeElapsedColumn,
     transient: bool = False,
+    above: Lines = nothing,
+    below: Lines = nothing,
 ) -> Iterator[Bars]:
     """Bars while the block runs, if the console is a terminal.
 
@@ -57,6 +90,8 @@ def show_bars(
         width: of the bars, in characters.
         time: the column that tells the time that passed, or is left; None: there is no room for it.
         transient: whether all of it vanishes at the end.
+        above: lines above the bars.
+        below: lines below them.
     """
     columns = [
         TextColumn("{task.description}", markup=False),
@@ -64,9 +99,7 @@ def show_bars(
         TextColumn("{task.fields[note]}", markup=False),
         *([] if time is None else [time()]),
     ]
-    with Progress(
-        *columns, console=console, transient=transient, disable=not console.is_terminal
-    ) as progress:
+    with _Framed(above, below, *columns, console=console, transient=transient) as progress:
         yield Bars(progress)
 
 

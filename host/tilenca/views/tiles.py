@@ -7,7 +7,7 @@ from rich.console import Console, Group
 from rich.text import Text
 
 from tilenca.shapes.file import Shape
-from tilenca.shapes.glyphs import Duty, draw, screen_colour
+from tilenca.shapes.glyphs import Duty, draw, label_of_glyph, screen_colour
 
 # Box-drawing characters by their arms: 1 up, 2 right, 4 down, 8 left.
 LIGHT = " ╵╶╰╷│╭├╴╯─┴╮┤┬┼"
@@ -34,8 +34,15 @@ def led_style(duty: Duty) -> str:
     """The LED as a terminal shows it; dark where it is off."""
     if not any(duty):
         return HOUSING
+    return f"{screen_style(duty)} {HOUSING}"
+
+
+def screen_style(duty: Duty) -> str:
+    """The LED's colour alone; a dark grey where it is off."""
+    if not any(duty):
+        return "rgb(60,60,60)"
     red, green, blue = (round(255 * part) for part in screen_colour(duty))
-    return f"rgb({red},{green},{blue}) {HOUSING}"
+    return f"rgb({red},{green},{blue})"
 
 
 def digit(segments: int) -> tuple[str, str, str]:
@@ -101,6 +108,62 @@ def compact(picture: Picture) -> list[Text]:
         for part, text in enumerate(draw(segments) if segments else ("   ", " . ", "   ")):
             drawn[3 * row + part][col] = Text.assemble((text, led_style(colour)), " ")
     return [Text.assemble(*line) for line in drawn]
+
+
+def letters(picture: Picture, known: tuple[str, ...] = (), ascii_only: bool = False) -> list[Text]:
+    """A tile is two characters in a line: what it shows, in its colour; `known` labels tell 5 from S."""
+    tiles = dict(zip(picture.shape.cells, zip(picture.segments, picture.colours, strict=True), strict=True))
+    dark = "." if ascii_only else "·"
+    lines = []
+    for row in range(len(picture.shape.rows)):
+        line = Text()
+        for col in range(len(picture.shape.rows[0])):
+            if (row, col) in tiles:
+                segments, colour = tiles[row, col]
+                line.append(f"{label_of_glyph(segments, known) or dark} ", led_style(colour))
+            else:
+                line.append("  ")
+        lines.append(line)
+    return lines
+
+
+def half_blocks(picture: Picture) -> list[Text]:
+    """Two tiles are one character, one above the other: their colours only; for the largest shapes."""
+    tiles = dict(zip(picture.shape.cells, picture.colours, strict=True))
+    lines = []
+    for row in range(0, len(picture.shape.rows), 2):
+        line = Text()
+        for col in range(len(picture.shape.rows[0])):
+            upper, lower = (
+                screen_style(tiles[place]) if (place := (row + below, col)) in tiles else "default"
+                for below in (0, 1)
+            )
+            if upper != "default":
+                line.append("▀", f"{upper} on {lower}")
+            else:
+                line.append(" " if lower == "default" else "▄", lower)
+        lines.append(line)
+    return lines
+
+
+def fitting(
+    picture: Picture, width: int, height: int, ascii_only: bool, known: tuple[str, ...] = ()
+) -> list[Text]:
+    """The largest picture of one shape that fits: digits in frames, letters, or colours alone.
+
+    Args:
+        picture: what to show.
+        width: characters in a line.
+        height: lines that there are.
+        ascii_only: whether there are no other characters.
+        known: labels that tell "5" from "S".
+    """
+    sizes = [compact, letters] if ascii_only else [framed, letters, half_blocks]
+    for draw_one in sizes:
+        lines = letters(picture, known, ascii_only) if draw_one is letters else draw_one(picture)
+        if len(lines) <= height and max(map(len, lines)) <= width:
+            return lines
+    return lines
 
 
 def beside(pictures: Sequence[Picture], console: Console, width: int, height: int | None = None) -> Group:

@@ -3,12 +3,15 @@
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
 
 from rich.console import Console
 from rich.progress import TimeRemainingColumn
 
 from tilenca.training.progress import Progress, Tell
+from tilenca.views.curve import Curve
 from tilenca.views.progress import show_bars
 
 LINE_EVERY_S = 60.0  # of each seed, where there is no terminal
@@ -24,7 +27,9 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
         total: iterations of each.
     """
     console = Console(stderr=True)
-    with show_bars(console, time=TimeRemainingColumn) as bars:
+    curve = agreement_curve(total)
+    lines = partial(curve.lines, console.options.ascii_only)
+    with show_bars(console, time=TimeRemainingColumn, below=lines) as bars:
         for seed in seeds:
             bars.add(f"{seed}", f"seed {seed}", total, f"0/{total}", begun=False)
         first: dict[int, tuple[float, int]] = {}
@@ -34,6 +39,7 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
             if news.seed not in first:
                 first[news.seed] = time.monotonic(), news.iteration
             now_s = time.monotonic()
+            curve.add(news.iteration, news.agreement)
             begun, iteration = first[news.seed]
             rate = (news.iteration - iteration) / max(now_s - begun, 1e-9)
             bars.move(f"{news.seed}", news.iteration, f"{news.iteration}/{total}  {_note(news, rate)}")
@@ -41,7 +47,8 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
             if not console.is_terminal and due:
                 printed[news.seed] = now_s
                 left_s = (total - news.iteration) / rate if rate else None
-                print(f"seed {news.seed}: {_line(news, total, left_s)}", file=sys.stderr, flush=True)
+                left = f"; {_left(news, left_s)}" if left_s is not None and news.iteration < total else ""
+                print(f"seed {news.seed}: {reached(news, total)}{left}", file=sys.stderr, flush=True)
 
         yield tell
 
@@ -66,16 +73,40 @@ def show_measuring(where: str) -> Iterator[Callable[[str], None]]:
         yield tell
 
 
-def _line(news: Progress, total: int, left_s: float | None) -> str:
+@dataclass(frozen=True)
+class TrainingViews:
+    """What a person sees of a training; by default what is in this module.
+
+    Attributes:
+        training: as `show_training`.
+        measuring: as `show_measuring`.
+    """
+
+    training: Callable[[Sequence[int], int], AbstractContextManager[Tell]] = field(
+        default_factory=lambda: show_training
+    )
+    measuring: Callable[[str], AbstractContextManager[Callable[[str], None]]] = field(
+        default_factory=lambda: show_measuring
+    )
+
+
+def agreement_curve(total: int) -> Curve:
+    """The curve of a training with so many iterations, of all its seeds together."""
+    return Curve(total, f"share of the drawings with every tile right, over {total:,} iterations")
+
+
+def reached(news: Progress, total: int) -> str:
     """The progress as a sentence, for a person and a log."""
     line = f"{news.iteration} of {total} iterations; all tiles right on {news.agreement:.0%} of the drawings"
     if news.check is not None:
         held, asked, _ = news.check
         line += f"; {held} of {asked} targets met"
-    if left_s is not None and news.iteration < total:
-        left = "less than a minute" if left_s < 60 else f"about {left_s / 60:.0f} min"
-        line += f"; {left} left{', less if the targets hold early' if news.check else ''}"
     return line
+
+
+def _left(news: Progress, left_s: float) -> str:
+    left = "less than a minute" if left_s < 60 else f"about {left_s / 60:.0f} min"
+    return f"{left} left{', less if the targets hold early' if news.check else ''}"
 
 
 def _note(news: Progress, rate: float) -> str:

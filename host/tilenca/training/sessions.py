@@ -1,0 +1,110 @@
+"""When a model was trained and for how long: the file `sessions.json` beside it. No torch here.
+
+Everything else that a training writes is the same to the byte for the same seed; times are not, so they have
+a file of their own.
+"""
+
+import json
+import os
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from tilenca.base.errors import TilencaError
+from tilenca.base.whole_file import write_whole
+
+FILE = "sessions.json"
+
+
+@dataclass(frozen=True)
+class Session:
+    """One call of a command that trained.
+
+    Attributes:
+        began: when, in UTC, as ISO 8601.
+        command: that makes the model.
+        recipe: its name.
+        seconds: how long it took; None: it has not ended, or was killed.
+        host, pid: of the process.
+    """
+
+    began: str
+    command: str
+    recipe: str
+    seconds: float | None
+    host: str
+    pid: int
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it still runs on this machine."""
+        if self.seconds is not None or self.host != socket.gethostname():
+            return False
+        try:
+            os.kill(self.pid, 0)
+        except ProcessLookupError:
+            return False
+        except PermissionError:
+            pass
+        return True
+
+
+def sessions_of(folder: Path) -> list[Session]:
+    """The sessions of a model's folder, the first one first; none where nothing is noted or can be read."""
+    with suppress(OSError, ValueError, TypeError):
+        return [Session(**one) for one in json.loads((folder / FILE).read_text(encoding="utf-8"))]
+    return []
+
+
+class Noted:
+    """A session that is noted in a model's folder while it lasts; see `noted`."""
+
+    def __init__(self, folder: Path, mine: Session, goes_on: bool) -> None:
+        self._folder, self._mine, self._before = folder, mine, sessions_of(folder)
+        self._earlier = self._before if goes_on else []
+        self._started = time.monotonic()
+        _write(folder, [*self._earlier, mine])
+
+    def moved(self, folder: Path) -> None:
+        """The model lies in another folder: the one that was there has its own sessions back."""
+        if folder != self._folder:
+            _write(self._folder, self._before)
+            self._folder = folder
+
+    def end(self) -> None:
+        """Notes how long it took."""
+        ended = replace(self._mine, seconds=round(time.monotonic() - self._started, 1))
+        _write(self._folder, [*self._earlier, ended])
+
+
+@contextmanager
+def noted(folder: Path, command: str, recipe: str, goes_on: bool) -> Iterator[Noted]:
+    """Notes the block as a session of training in this folder, whether it ends well or not.
+
+    Args:
+        folder: of the model.
+        command: that makes it.
+        recipe: its name.
+        goes_on: whether earlier sessions count, too.
+
+    Raises:
+        TilencaError: the folder cannot be written.
+    """
+    began = datetime.now(UTC).isoformat(timespec="seconds")
+    session = Noted(folder, Session(began, command, recipe, None, socket.gethostname(), os.getpid()), goes_on)
+    try:
+        yield session
+    except BaseException:
+        with suppress(TilencaError):  # the first failure is the one to tell
+            session.end()
+        raise
+    session.end()
+
+
+def _write(folder: Path, sessions: list[Session]) -> None:
+    text = json.dumps([asdict(session) for session in sessions], indent=2) + "\n"
+    write_whole(folder / FILE, text.encode(), "make room there, or give another --out")

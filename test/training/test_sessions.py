@@ -1,0 +1,88 @@
+"""When a model was trained and for how long."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tilenca.base.errors import TilencaError
+from tilenca.training import sessions
+from tilenca.training.sessions import FILE, noted, sessions_of
+
+
+class Clock:
+    """Ten seconds pass between any two looks at it."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+    def monotonic(self) -> float:
+        self.seconds += 10.0
+        return self.seconds
+
+
+@pytest.fixture(autouse=True)
+def _clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "time", Clock())
+
+
+def test_a_session_is_noted_when_it_begins_and_its_time_when_it_ends(tmp_path: Path) -> None:
+    with noted(tmp_path, "tilenca train", "quick", goes_on=False):
+        (running,) = sessions_of(tmp_path)
+        assert running.seconds is None
+        assert running.is_running
+    (ended,) = sessions_of(tmp_path)
+    assert ended == replace(running, seconds=10.0)
+    assert (ended.command, ended.recipe) == ("tilenca train", "quick")
+    assert not ended.is_running
+
+
+def test_an_interrupted_session_counts_and_the_next_one_goes_on_or_begins_anew(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), noted(tmp_path, "tilenca train", "quick", goes_on=False):
+        raise KeyboardInterrupt
+    for goes_on, count in ((True, 2), (False, 1)):
+        with noted(tmp_path, "tilenca train", "quick", goes_on):
+            pass
+        assert [one.seconds for one in sessions_of(tmp_path)] == [10.0] * count
+
+
+def test_a_model_that_stays_keeps_its_own_sessions(tmp_path: Path) -> None:
+    other = tmp_path / "model-1234"
+    other.mkdir()
+    with noted(tmp_path, "first", "full", goes_on=False):
+        pass
+    with noted(tmp_path, "second", "quick", goes_on=False) as session:
+        session.moved(tmp_path)
+        assert [one.command for one in sessions_of(tmp_path)] == ["second"]
+        session.moved(other)
+    assert [one.command for one in sessions_of(tmp_path)] == ["first"]
+    assert [(one.command, one.seconds) for one in sessions_of(other)] == [("second", 10.0)]
+
+
+def test_a_session_that_was_killed_or_is_elsewhere_does_not_run(tmp_path: Path) -> None:
+    with noted(tmp_path, "tilenca train", "quick", goes_on=False):
+        (mine,) = sessions_of(tmp_path)
+    assert not replace(mine, host="elsewhere").is_running
+    assert not replace(mine, pid=2**22 + 1).is_running, "no process has such a number"
+
+
+@pytest.mark.parametrize("text", ["", "{}", '[{"began": "now"}]', "[1]"])
+def test_a_damaged_file_says_nothing(text: str, tmp_path: Path) -> None:
+    (tmp_path / FILE).write_text(text)
+    assert sessions_of(tmp_path) == []
+
+
+def test_the_first_failure_is_the_one_that_is_told(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+
+    def fail() -> None:
+        with noted(folder, "", "quick", goes_on=False):
+            (folder / FILE).unlink()
+            folder.rmdir()
+            raise ValueError("of its own")
+
+    folder.mkdir()
+    with pytest.raises(ValueError, match="of its own"):
+        fail()
+    with pytest.raises(TilencaError, match="give another --out"), noted(folder, "", "quick", goes_on=False):
+        pass
