@@ -44,7 +44,7 @@ export class Share {
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
-      element("div", { class: "row" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
+      element("div", { class: "row", "data-needs": "arrange" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
       row("Picture", "The board as it is now, as PNG", () => this.picture()),
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
       row("Replay a file…", "Shows a recording instead of running tiles", () => this.file.click()),

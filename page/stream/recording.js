@@ -4,7 +4,7 @@
 import { STREAM_VERSION } from "./source.js";
 
 const FULL_SPEED = 20; // where one asks for as fast as it can
-const FIXED = "This is a recording: nothing can be changed in it. Reload the page for running tiles.";
+const TAKES = ["open", "pace", "step", "seek", "rest"];
 
 /**
  * The events of a file: the first one of the stream, and those of the run.
@@ -37,9 +37,10 @@ export function parseRecording(text) {
   return events;
 }
 
-/** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event */
-function subjectOf(event) {
-  const kind = ["place", "open", "display", "cable"].find((one) => one in event);
+/** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event @param {number} place */
+function subjectOf(event, place) {
+  if (event.note !== undefined) return `note ${place}`;
+  const kind = ["place", "open", "display", "cable", "health", "classes"].find((one) => one in event);
   if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
   if (event.raw === undefined) return "";
   const [name, , side] = event.raw.split(",");
@@ -57,7 +58,7 @@ export function openRecording(recorded, listener) {
   const end = Math.max(0, ...rest.slice(-1).map((event) => event.time), events.at(-1)?.time ?? 0);
   let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
   /** @type {StreamEvent[]} */
-  let waiting = [{ ...first, source: "recording" }];
+  let waiting = [{ ...first, source: "recording", of: first.source, takes: TAKES }];
   let before = performance.now();
   let frame = requestAnimationFrame(tick);
 
@@ -79,7 +80,7 @@ export function openRecording(recorded, listener) {
     /** @type {Map<string, StreamEvent>} */
     const last = new Map();
     for (place = 0; place < events.length && events[place].time <= wanted; place++) {
-      const subject = subjectOf(events[place]);
+      const subject = subjectOf(events[place], place);
       last.delete(subject); // so that it comes where the latest one does
       if (subject) last.set(subject, events[place]);
     }
@@ -125,9 +126,7 @@ export function openRecording(recorded, listener) {
   };
   return {
     send(command) {
-      const obey = obeyed[command.do];
-      if (obey) obey(command);
-      else tell({ time, refused: FIXED });
+      obeyed[command.do]?.(command);
     },
     close: () => cancelAnimationFrame(frame),
   };

@@ -95,12 +95,12 @@ class Client:
                 return
 
 
-def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> ASGIApp:
+def make_app(bundle: Path, make_source: Callable[[str], Source], guard: Guard) -> ASGIApp:
     """The application: the files of the bundle, and the stream.
 
     Args:
         bundle: folder of the static page.
-        make_source: called for each client, in a thread of its own.
+        make_source: called for each client, in a thread of its own, with the model that it wants, or "".
         guard: who may come.
     """
     clients = 0
@@ -119,7 +119,8 @@ def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> A
             return
         clients += 1
         try:
-            await Client(websocket, make_source).serve()
+            wanted = websocket.query_params.get("model", "")
+            await Client(websocket, lambda: make_source(wanted)).serve()
         finally:
             clients -= 1
             if websocket.client_state is WebSocketState.CONNECTED:

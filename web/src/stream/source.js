@@ -5,6 +5,7 @@ import { Board } from "./board.js";
 import { MOST_TILES, checked } from "./commands.js";
 import { sorted } from "./faults.js";
 import { Pace, QUANTUM_S } from "./pace.js";
+import { blinkCommand, restartCommand, setCommand } from "./settings.js";
 import { SIDES } from "./sides.js";
 import { Teller, event, portName, refused } from "./teller.js";
 import { Timeline } from "./timeline.js";
@@ -123,6 +124,15 @@ export class EmulatedSource {
         return board.array.tile(this.#tile(command.port)).reset();
       case "noise":
         return board.faults.spoilAll("loss", command.loss);
+      case "blink":
+        return board.tell(this.#tile(command.port), blinkCommand(command.seconds));
+      case "restart":
+        return board.tell(this.#tile(command.port), restartCommand());
+      case "set": {
+        const tiles = command.port === null ? [...board.places.keys()].sort((one, other) => one - other) : [this.#tile(command.port)];
+        for (const tile of tiles) board.tell(tile, setCommand(command.name, command.value));
+        return undefined;
+      }
       default:
         throw new TilencaError(`${command.do}: whoever stands before the source takes it`);
     }
