@@ -18,7 +18,7 @@ import { Verdict } from "./components/verdict.js";
 import { cellsOf } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
-import { openRecording } from "./stream/recording.js";
+import { openOwnRecording, openRecording } from "./stream/recording.js";
 import { Run, TOO_MUCH } from "./stream/run.js";
 import { openServer } from "./stream/socket.js";
 import { surprise } from "./stream/surprise.js";
@@ -108,6 +108,7 @@ new Share(byId("top-deeds"), tiles, recorder, {
   link: linkUntilNow,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text) => notice.say(text),
+  canAlone: () => behind !== "recording",
   replay(events) {
     source.close();
     notice.say("A recording: go to any time of it. Reload the page for running tiles.");
@@ -117,6 +118,8 @@ new Share(byId("top-deeds"), tiles, recorder, {
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 listenToKeys(bar, deeds);
+// Only the board and time, for a lesson or an article.
+document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));
 
 /** Another drawing, with its middle where that of the tiles is. @param {Drawing} drawing */
 function slideUnder(drawing) {
@@ -189,9 +192,10 @@ const listener = {
   onOpen: () => notice.clear(),
   onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
 };
-// The document says what stands behind it: `tilenca page`, or the emulator beside it in the bundle.
-const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content");
-let source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
+// The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
+const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
+const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
+let source = (openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer)(listener);
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => {

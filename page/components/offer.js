@@ -10,7 +10,7 @@ export function offerOnly(tiles) {
     one.hidden = !(one.dataset.needs ?? "").split(" ").some((name) => tiles.can(name));
   }
   for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-only]"))) {
-    one.hidden = one.dataset.only !== tiles.kind;
+    one.hidden = ![tiles.kind, tiles.source].includes(one.dataset.only ?? "");
   }
 }
 

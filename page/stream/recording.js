@@ -1,41 +1,10 @@
 // The source that is a recording: its events again, at any speed, forwards and backwards. No hand changes it.
 
 /** @import { Listener, Source, StreamEvent } from "./source.js" */
-import { STREAM_VERSION } from "./source.js";
+import { parseRecording } from "./recording_file.js";
 
 const FULL_SPEED = 20; // where one asks for as fast as it can
 const TAKES = ["open", "pace", "step", "seek", "rest"];
-
-/**
- * The events of a file: the first one of the stream, and those of the run.
- * @param {string} text
- * @returns {StreamEvent[]}
- * @throws {Error} it is none; in words for a person
- */
-export function parseRecording(text) {
-  /** @type {StreamEvent[]} */
-  const events = [];
-  text.split("\n").forEach((line, index) => {
-    if (line.trim() === "") return;
-    /** @type {any} */
-    let event = null;
-    try {
-      event = JSON.parse(line);
-    } catch {
-      // said below
-    }
-    if (typeof event !== "object" || event === null || typeof event.time !== "number") {
-      throw new Error(`line ${index + 1} is no event; choose a recording (.jsonl)`);
-    }
-    events.push(event);
-  });
-  const [first, run] = events;
-  if (first?.stream === undefined || !run?.run) {
-    throw new Error("it does not begin as a recording of the page does; choose another one");
-  }
-  if (first.stream !== STREAM_VERSION) throw new Error(`it has version ${first.stream}, this page ${STREAM_VERSION}`);
-  return events;
-}
 
 /** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event @param {number} place */
 function subjectOf(event, place) {
@@ -45,6 +14,34 @@ function subjectOf(event, place) {
   if (event.raw === undefined) return "";
   const [name, , side] = event.raw.split(",");
   return `raw ${event.port} ${name === "$LINK" ? `${name} ${side}` : name}`;
+}
+
+/**
+ * The recording that lies in the document, or beside it.
+ * @param {Listener} listener
+ * @returns {Source}
+ */
+export function openOwnRecording(listener) {
+  /** @type {Source | null} */
+  let source = null;
+  let isClosed = false;
+  const inside = document.getElementById("recording");
+  const token = new URLSearchParams(location.hash.slice(1)).get("token");
+  /** @param {string} text */
+  const begin = (text) => {
+    if (!isClosed) source = openRecording(parseRecording(text), listener);
+  };
+  const read = async () => (inside ? inside.textContent ?? "" : (await fetch(`recording.jsonl${token ? `?token=${token}` : ""}`)).text());
+  read().then(begin).catch((error) => {
+    listener.onEvents([{ time: 0, refused: `The recording cannot be shown: ${error instanceof Error ? error.message : error}` }]);
+  });
+  return {
+    send: (command) => source?.send(command),
+    close: () => {
+      isClosed = true;
+      source?.close();
+    },
+  };
 }
 
 /**

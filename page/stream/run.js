@@ -9,6 +9,9 @@ import { faultsNow, kindsChangedBy } from "./faults.js";
 
 export const TOO_MUCH = "Too much was done for a link: it is that of the board as it lies now. Save a recording instead.";
 
+// What of an address is no part of the run.
+const KEPT = ["embed", "lesson"];
+
 export class Run {
   /** @param {Tiles} tiles @param {(command: Command) => void} send to the source */
   constructor(tiles, send) {
@@ -40,6 +43,8 @@ export class Run {
   /** Begins what the address asks for. */
   begin() {
     this.start = this.start ?? readAddress(location.search, this.tiles.drawings);
+    const isOfReal = this.tiles.kind === "watched"; // they are slow enough as they are
+    if (isOfReal && !new URLSearchParams(location.search).has("speed")) this.start.speed = 1;
     this.open(this.start);
   }
 
@@ -89,7 +94,9 @@ export class Run {
     start.cells = laid.map((tile) => tile.place);
     const isUp = tiles.time > start.spread + 0.1;
     if (isUp) start.faults = faultsNow(tiles, this.given, this.handled, this.noise);
-    const address = writeAddress({ ...start, deeds: [] }, tiles.drawings);
+    const given = new URLSearchParams(location.search);
+    const kept = KEPT.filter((name) => given.has(name)).map((name) => `&${name}=${given.get(name)}`).join("");
+    const address = writeAddress({ ...start, deeds: [] }, tiles.drawings) + kept;
     if (address !== location.search) history.replaceState(null, "", address + location.hash);
     return known(start.cells, tiles.drawings)?.name ?? "";
   }
