@@ -10,12 +10,13 @@ import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
+import { Lesson } from "./components/lesson.js";
 import { Notice } from "./components/notice.js";
 import { offerOnly, refusal } from "./components/offer.js";
 import { Share } from "./components/share.js";
 import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
-import { cellsOf } from "./stream/address.js";
+import { cellsOf, readAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
 import { openOwnRecording, openRecording } from "./stream/recording.js";
@@ -115,6 +116,11 @@ new Share(byId("top-deeds"), tiles, recorder, {
     source = openRecording(events, listener);
   },
 });
+const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
+  send,
+  open: (cells, speed) => run.open({ ...readAddress("", tiles.drawings), cells, speed }),
+  selected: () => board.selected,
+});
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 listenToKeys(bar, deeds);
@@ -164,6 +170,7 @@ function show(events) {
     tiles.refused = "";
     if (tiles.runs === 0) run.withoutFaults();
   }
+  lesson.update();
   board.update(now);
   inspector.update();
   bar.update();
@@ -184,6 +191,7 @@ function begin() {
   deeds.select(null);
   run.begin();
   bar.showNoise(run.noise);
+  lesson.begin();
 }
 
 /** @type {import("./stream/source.js").Listener} */

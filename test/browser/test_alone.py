@@ -107,7 +107,7 @@ def damaged(chance: random.Random, lines: list[str]) -> str:
         if not isinstance(deeper, dict | list) or not deeper or chance.random() < 0.3:
             break
         place = deeper
-    strange = [None, -1, 1e99, "x", "", [], {}, True, [[]], {"time": 0}, "<script>", 2.5]
+    strange: list[Any] = [None, -1, 1e99, "x", "", [], {}, True, [[]], {"time": 0}, "<script>", 2.5]
     if chance.random() < 0.2 and isinstance(place, dict):
         del place[key]
     else:
