@@ -6,6 +6,7 @@ import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
 import { lostWords } from "./components/connection.js";
 import { byId } from "./components/dom.js";
+import { obeyParent, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
 import { Inspector } from "./components/inspector.js";
@@ -109,6 +110,7 @@ new Share(byId("top-deeds"), tiles, recorder, {
   link: linkUntilNow,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text) => notice.say(text),
+  compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
   replay(events) {
     source.close();
@@ -124,6 +126,7 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 listenToKeys(bar, deeds);
+obeyParent(deeds);
 // Only the board and time, for a lesson or an article.
 document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));
 
@@ -192,6 +195,7 @@ function begin() {
   run.begin();
   bar.showNoise(run.noise);
   lesson.begin();
+  tellParent(tiles, run.start?.cells ?? []);
 }
 
 /** @type {import("./stream/source.js").Listener} */

@@ -18,6 +18,7 @@ const HOLE = "<!-- the recording -->";
  *   words: () => string,
  *   say: (text: string) => void,
  *   replay: (events: StreamEvent[]) => void,
+ *   compare: () => void,
  *   canAlone: () => boolean,
  * }} ShareDeeds
  */
@@ -45,6 +46,8 @@ export class Share {
     const row = (text, help, act) => element("div", { class: "row" },
       element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
     this.alone = row("Web page", "This run until now, as one file that replays in any browser", () => this.page());
+    this.compare = row("Compare", "Two runs side by side: another model, drawing, seed, or more lost bytes", () => deeds.compare());
+    this.compare.dataset.needs = "arrange";
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
@@ -52,6 +55,7 @@ export class Share {
       row("Picture", "The board as it is now, as PNG", () => this.picture()),
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
       this.alone,
+      this.compare,
       row("Replay a file…", "Shows a recording instead of running tiles", () => this.file.click()),
       this.file,
     );
