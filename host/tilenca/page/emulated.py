@@ -15,7 +15,7 @@ from tilenca.emulator.history import QUANTUM_S
 from tilenca.emulator.types import port_name
 from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
-from tilenca.page.teller import Said, Teller
+from tilenca.page.teller import VOICE_BYTES, Said, Teller
 from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.commands import blink_command, restart_command, set_command
@@ -241,7 +241,9 @@ class EmulatedSource:
 
     def _keep(self) -> None:
         moment = self._board.save()
-        self._timeline.keep(moment.time_s, _Moment(moment, self._teller.save()), len(moment.snapshot))
+        said = self._teller.save()
+        size = len(moment.snapshot) + VOICE_BYTES * len(said)
+        self._timeline.keep(moment.time_s, _Moment(moment, said), size)
 
     def _seek(self, time_s: float) -> None:
         """Goes to a time that the run has been at; all that hands did until then is done."""

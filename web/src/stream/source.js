@@ -7,7 +7,7 @@ import { sorted } from "./faults.js";
 import { Pace, QUANTUM_S } from "./pace.js";
 import { blinkCommand, restartCommand, setCommand } from "./settings.js";
 import { SIDES } from "./sides.js";
-import { Teller, event, portName, refused } from "./teller.js";
+import { Teller, VOICE_BYTES, event, portName, refused } from "./teller.js";
 import { Timeline } from "./timeline.js";
 
 // Up to this speed there is time to look at single frames on the cables.
@@ -244,7 +244,8 @@ export class EmulatedSource {
   /** @param {Board} board */
   #keep(board) {
     const moment = board.save();
-    this.#timeline.keep(moment.timeS, { board: moment, said: this.#teller.save() }, moment.snapshot.length);
+    const said = this.#teller.save();
+    this.#timeline.keep(moment.timeS, { board: moment, said }, moment.snapshot.length + VOICE_BYTES * said.length);
   }
 
   /** Goes to a time that the run has been at; all that hands did until then is done. @param {number} wantedS */
