@@ -88,7 +88,7 @@ def test_embedded_there_is_the_board_and_time(visit: Visit, server: PageServer) 
         assert visit.page.locator(stays).is_visible()
     size = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
     assert visit.page.evaluate(size) == [520, 480]
-    visit.drag(visit.middle("[data-port=tile-11]"), (2, visit.middle("[data-port=tile-11]")[1]))
+    visit.pull("tile-11")
     visit.wait_for_verdict("All 15 tiles show 9")
     found = Axe().run(visit.page)
     assert found.violations_count == 0, found.generate_report()
