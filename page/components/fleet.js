@@ -42,7 +42,8 @@ export class FleetPanel {
     this.log = element("ol", { class: "log", tabindex: 0, "aria-label": "What has changed, the latest first" });
     root.append(
       element("h2", { id: "fleet-title" }, "Tiles"),
-      element("p", { class: "summary" }, "As they say themselves over USB. To pull one out or to cut a cable, use your hands."),
+      element("p", { class: "summary" }, "As they say themselves over USB.",
+        element("span", { "data-needs": "set" }, " To pull one out or to cut a cable, use your hands.")),
       element("table", { class: "links fleet-table" },
         element("thead", {}, element("tr", {}, ...["Tile", "Port", "Arrives", "State"].map((name) => element("th", { scope: "col" }, name)))),
         this.body),
@@ -85,7 +86,7 @@ export class FleetPanel {
       known = { row, cells, button };
       this.rows.set(tile.port, known);
     }
-    const share = worst(tile);
+    const share = tile.trouble ? null : worst(tile);
     const name = tile.port.startsWith("(") ? "" : tile.port.split("/").at(-1) ?? "";
     const texts = [name, share === null ? "" : `${Math.round(share * 100)} %`, stateOf(tile)];
     setText(known.button, tile.number ? String(tile.number) : "?");

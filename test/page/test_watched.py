@@ -113,6 +113,10 @@ def test_a_port_that_is_pulled_is_told_and_the_other_goes_on(page: Page, tiles: 
     page.wait_for(raw_of(tiles[0].port, "TILE"))
     with pytest.raises(UsageError, match="cannot be reached now"):
         page.source.take(commands.Blink(tiles[1].port))
+    tiles[0].unplug()
+    page.wait_for(open_of(tiles[0].port, False))
+    with pytest.raises(UsageError, match="no tile can be reached"):
+        page.source.take(commands.Set("period", 20))
 
 
 def test_a_tile_that_speaks_is_asked_what_it_runs(page: Page, tiles: list[Tile]) -> None:

@@ -113,6 +113,8 @@ class Watch:
             view = self._teller.fleet.tiles.get(port or "")
             if port is not None and (view is None or not view.is_open):
                 raise UsageError(f"{port}: cannot be reached now{f' ({view.reason})' if view else ''}")
+            if not any(view.is_open for view in self._teller.fleet.tiles.values()):
+                raise UsageError("no tile can be reached now")
             if len(self._orders) >= MOST_ORDERS:
                 raise UsageError("the tiles have not answered the last commands yet; wait a moment")
             self._orders.append(_Order(name, line, port, answer))
