@@ -148,4 +148,6 @@ def test_who_comes_later_is_told_everything_and_news_goes_on() -> None:
     assert ",7,7," in lines[-1]
     assert of(everything, "display", "/dev/a")[0]["segments"] == look_of("7", 7).segments
     assert "shows 7, before 4" in of(everything, "note")
-    assert lab.look() == [], "the others were told before"
+    [display] = of(lab.look(), "display", "/dev/a")
+    assert display["segments"] == look_of("7", 7).segments, "it is still news for the others"
+    assert lab.look() == []

@@ -151,3 +151,15 @@ def test_what_only_a_hand_can_do_is_refused(page: Page) -> None:
     for command in (commands.Pull("x"), commands.Noise(0.1), commands.Open(((0, 0),)), commands.Seek(1)):
         with pytest.raises(UsageError, match="real tiles"):
             page.source.take(command)
+
+
+def test_a_watch_that_breaks_off_says_so(
+    watch: Watch, page: Page, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(timeout_s: float) -> list[object]:
+        raise ZeroDivisionError("no such share")
+
+    monkeypatch.setattr(watch._listener, "poll", broken)
+    refusal = page.wait_for(lambda event: "refused" in event)["refused"]
+    assert refusal == "the tiles are not read any more: ZeroDivisionError: no such share"
+    assert "Traceback" in capsys.readouterr().err

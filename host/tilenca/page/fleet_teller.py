@@ -165,8 +165,10 @@ class FleetTeller:
     # --- everything ---
 
     def all(self, now_s: float) -> list[StreamEvent]:
-        """Everything, for a page that knows nothing; lines have the times at which they were said."""
-        self.look(now_s)
+        """Everything, for a page that knows nothing; lines have the times at which they were said.
+
+        What is news stays so for the pages that know the rest.
+        """
         time_s, shown, self._shown = self._page_s(now_s), self._shown, {}
         ports = [
             open_event(time_s, view.port, view.is_open, view.reason) for view in self.fleet.tiles.values()

@@ -2,6 +2,7 @@
 
 import threading
 import time
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import TracebackType
@@ -129,8 +130,15 @@ class Watch:
                     self._hear(event)
                 self._look()
         except TilencaError as error:
-            warn(f"tilenca: {error}")
-            self._tell([refused_event(0.0, str(error))])
+            self._break_off(str(error))
+        except Exception as error:  # a mistake of ours: nobody must wait for tiles that are not read
+            traceback.print_exc()
+            self._break_off(f"the tiles are not read any more: {type(error).__name__}: {error}")
+
+    def _break_off(self, reason: str) -> None:
+        warn(f"tilenca: {reason}")
+        with self._lock:
+            self._tell([refused_event(0.0, reason)])
 
     def _hear(self, event: Event) -> None:
         with self._lock:
