@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from tilenca.base.errors import TilencaError, UsageError
@@ -11,6 +11,9 @@ from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import Offer
 from tilenca.protocol.stream import StreamEvent, stream_event
 from tilenca.protocol.stream_commands import StreamCommand
+
+# PlatformIO builds one at a time.
+_BUILDING = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,6 @@ class ModelOffer:
     offer: Offer
     find_image: Callable[[], Path | None]
     build: Callable[[], Path]
-    lock: threading.Lock = field(default_factory=threading.Lock, compare=False)
 
     @property
     def id_text(self) -> str:
@@ -39,7 +41,7 @@ class ModelOffer:
 
     def image(self) -> Path:
         """Its firmware, built if need be; several may ask at the same time."""
-        with self.lock:
+        with _BUILDING:
             return self.find_image() or self.build()
 
 
