@@ -1,46 +1,44 @@
 // The page: one source of events, one picture of the tiles, and the hands that reach in.
 
 /** @import { Command, Drawing, Place, StreamEvent } from "./stream/source.js" */
-/** @import { Start } from "./stream/address.js" */
 import { Agreement } from "./components/agreement.js";
 import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
+import { lostWords } from "./components/connection.js";
 import { byId } from "./components/dom.js";
+import { obeyParent, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
+import { FleetPanel } from "./components/fleet.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
+import { Lesson } from "./components/lesson.js";
 import { Notice } from "./components/notice.js";
+import { offerOnly, refusal } from "./components/offer.js";
 import { Share } from "./components/share.js";
 import { Timeline } from "./components/timeline.js";
 import { Verdict } from "./components/verdict.js";
-import { cellsOf, known, readAddress, writeAddress } from "./stream/address.js";
+import { cellsOf, readAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
-import { MOST_DEEDS, MOST_TEXT } from "./stream/deeds.js";
-import { faultsNow, kindsChangedBy } from "./stream/faults.js";
 import { Recorder } from "./stream/recorder.js";
-import { openRecording } from "./stream/recording.js";
+import { openOwnRecording, openRecording } from "./stream/recording.js";
+import { Run, TOO_MUCH } from "./stream/run.js";
 import { openServer } from "./stream/socket.js";
-import { BROKE_OFF, TOO_MANY_PAGES, WRONG_TOKEN } from "./stream/source.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
 
 export const tiles = new Tiles();
 const recorder = new Recorder();
-/** @type {Start | null} */
-let start = null;
-let noise = 0;
+const run = new Run(tiles, (command) => source.send(command));
 let lastRefused = "";
-
-/** What the run was given at its start, and the kinds of it that a hand has changed since. @type {string[]} */
-let given = [];
-/** @type {Set<string>} */
-const handled = new Set();
-/** What the run began with. @type {Start | null} */
-let opened = null;
+let wasBuilding = false;
 
 /** @param {Command} command */
 function send(command) {
-  for (const kind of kindsChangedBy(command)) handled.add(kind);
+  if (!tiles.can(command.do)) {
+    notice.say(refusal(tiles));
+    return;
+  }
+  run.note(command);
   source.send(command);
 }
 
@@ -68,31 +66,31 @@ const deeds = {
   freeze: (port, on) => send({ do: "freeze", port, on }),
   /** @param {string} port */
   reset: (port) => send({ do: "reset", port }),
+  /** @param {string} port */
+  press: (port) => send({ do: "restart", port }),
+  /** @param {string} port */
+  blink: (port) => send({ do: "blink", port }),
+  /** @param {string} name @param {number} value @param {string | null} port null: all of them */
+  set: (name, value, port) => send({ do: "set", name, value, port }),
   /** @param {import("./components/hands.js").Tool} tool */
   tool(tool) {
     board.hands.tool = tool;
     byId("board").dataset.tool = tool;
   },
   /** @param {number} speed @param {boolean} paused */
-  pace(speed, paused) {
-    if (start) start.speed = speed;
-    send({ do: "pace", speed, paused });
-  },
+  pace: (speed, paused) => send({ do: "pace", speed, paused }),
   step: () => send({ do: "step", seconds: tiles.stepS }),
   /** One update back. */
   back: () => {
     if (tiles.end !== null) timeline.go(timeline.aim - tiles.stepS);
   },
   restart() {
-    if (!start) return;
-    remember();
-    start.until = null;
-    start.deeds = [];
-    open(start);
+    deeds.select(null);
+    run.restart();
+    bar.showNoise(run.noise);
   },
   /** @param {number} loss */
   noise(loss) {
-    noise = loss;
     bar.showNoise(loss);
     send({ do: "noise", loss });
   },
@@ -112,14 +110,25 @@ new Share(byId("top-deeds"), tiles, recorder, {
   link: linkUntilNow,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text) => notice.say(text),
+  compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
+  canAlone: () => behind !== "recording",
   replay(events) {
     source.close();
     notice.say("A recording: go to any time of it. Reload the page for running tiles.");
     source = openRecording(events, listener);
   },
 });
-const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing));
+const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
+  send,
+  open: (cells, speed) => run.open({ ...readAddress("", tiles.drawings), cells, speed }),
+  selected: () => board.selected,
+});
+const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
+const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 listenToKeys(bar, deeds);
+obeyParent(deeds);
+// Only the board and time, for a lesson or an article.
+document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));
 
 /** Another drawing, with its middle where that of the tiles is. @param {Drawing} drawing */
 function slideUnder(drawing) {
@@ -129,103 +138,78 @@ function slideUnder(drawing) {
   send({ do: "arrange", cells: cellsOf(drawing.rows).map(([r, c]) => [r + row, c + col]) });
 }
 
-/** Begins a run. @param {Start} wanted */
-function open(wanted) {
-  deeds.select(null);
-  given = wanted.faults;
-  opened = { ...wanted };
-  handled.clear();
-  for (const { deed } of wanted.deeds) for (const kind of kindsChangedBy(deed)) handled.add(kind);
-  noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
-  bar.showNoise(noise);
-  const { cells, seed, speed, faults, spread, until } = wanted;
-  const planned = wanted.deeds.map(({ time, deed }) => [time, deed]);
-  send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until, deeds: planned });
+/** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
+function chooseModel(model) {
+  history.replaceState(null, "", `?model=${model.id || model.name}${location.hash}`);
+  run.start = null;
+  source.close();
+  source = openServer(listener);
 }
 
 /** The address of the run as it was, with all that hands did, until now. */
 function linkUntilNow() {
-  if (!opened || tiles.source === "recording" || tiles.deeds.length > MOST_DEEDS) return location.href;
-  const until = Number(tiles.time.toFixed(6));
-  const deeds = tiles.deeds.filter(({ time }) => time <= until);
-  const run = { ...opened, speed: start?.speed ?? opened.speed, model: start?.model ?? "", until, deeds };
-  if (JSON.stringify(run).length > MOST_TEXT) {
-    notice.say("Too much was done for a link: it is that of the board as it lies now. Save a recording instead.");
-    return location.href;
-  }
-  return new URL(writeAddress(run, tiles.drawings) + location.hash, location.href).href;
+  const query = run.link();
+  if (query === null) notice.say(TOO_MUCH);
+  return query === null ? location.href : new URL(query + location.hash, location.href).href;
 }
 
-/** Notes what lies on the board now, in `start` and in the address. */
+/** Notes what lies on the board now, in the address. */
 function remember() {
-  if (tiles.source === "recording") return;
-  checkModel();
-  const laid = tiles.laid();
-  if (!start || !laid.length) return;
-  start.cells = laid.map((tile) => tile.place);
-  const isUp = tiles.time > start.spread + 0.1;
-  if (isUp) start.faults = faultsNow(tiles, given, handled, noise);
-  const address = writeAddress({ ...start, deeds: [] }, tiles.drawings);
-  if (address !== location.search) history.replaceState(null, "", address + location.hash);
-  drawings.mark(known(start.cells, tiles.drawings)?.name ?? "");
+  const before = run.otherModel();
+  if (before && run.isOwn) notice.say(`The link is of model ${before}; these tiles run ${run.start?.model}, and may differ.`);
+  drawings.mark(run.remember());
 }
 
 /** @param {StreamEvent[]} events */
 function show(events) {
   const now = performance.now();
-  const first = events.find((event) => event.stream !== undefined);
+  const isFirst = events.some((event) => event.stream !== undefined);
   tiles.take(events);
   recorder.take(events);
-  if (first) {
-    drawings.fill(tiles.drawings, (label) => tiles.look(label).rgb);
-    start = start ?? readAddress(location.search, tiles.drawings);
-    open(start);
-  }
+  if (isFirst) begin();
   if (tiles.refused) {
     notice.say(tiles.refused);
     lastRefused = tiles.refused;
     tiles.refused = "";
-    if (tiles.runs === 0 && start?.faults.length) open((start = { ...start, faults: [] }));
+    if (tiles.runs === 0) run.withoutFaults();
   }
+  lesson.update();
   board.update(now);
   inspector.update();
   bar.update();
   verdict.update(tiles, now);
   agreement.update(now);
   timeline.update(now);
+  fleet.update(now);
 }
 
-/** Says so where the address was made with another model. */
-function checkModel() {
-  const modelId = tiles.laid().find((tile) => tile.modelId)?.modelId;
-  if (!start || !modelId || start.model === modelId) return;
-  if (start.model) notice.say(`The link is of model ${start.model}; these tiles run ${modelId}, and may differ.`);
-  start.model = modelId;
+/** A source is there: shows what it can do, and begins a run, unless its tiles run by themselves. */
+function begin() {
+  offerOnly(tiles);
+  drawings.fill(tiles);
+  if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute.`);
+  else if (wasBuilding) notice.clear();
+  wasBuilding = tiles.source === "building";
+  if (!tiles.can("open")) return;
+  deeds.select(null);
+  run.begin();
+  bar.showNoise(run.noise);
+  lesson.begin();
+  tellParent(tiles, run.start?.cells ?? []);
 }
 
 /** @type {import("./stream/source.js").Listener} */
 const listener = {
   onEvents: show,
   onOpen: () => notice.clear(),
-  onLost: (seconds, code) => notice.stay(lostWords(code, `trying again in ${Math.ceil(seconds)} s`)),
+  onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
 };
-// The document says what stands behind it: `tilenca page`, or the emulator beside it in the bundle.
-const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content");
-let source = behind === "emulator" ? openEmulator(listener) : openServer(listener);
-
-/** @param {number} code of the end of the connection @param {string} again when it is tried again */
-function lostWords(code, again) {
-  switch (code) {
-    case WRONG_TOKEN:
-      return "The address has not the right token: open the one that tilenca page has printed.";
-    case BROKE_OFF:
-      return `${lastRefused || "The run broke off"}; reload the page to begin again.`;
-    case TOO_MANY_PAGES:
-      return `${lastRefused || "Too many pages are open already; close one of them"}; ${again}`;
-    default:
-      return `The tiles are out of reach; ${again}`;
-  }
-}
+// The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
+const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
+const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
+let source = (openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer)(listener);
 
 setInterval(remember, 500);
-document.addEventListener("visibilitychange", () => send({ do: "rest", on: document.hidden }));
+document.addEventListener("visibilitychange", () => {
+  if (tiles.can("rest")) source.send({ do: "rest", on: document.hidden });
+});

@@ -55,7 +55,7 @@ export class Bar {
     this.deeds = deeds;
     /** @type {Map<Tool, HTMLButtonElement>} */
     this.tools = new Map();
-    const tools = element("div", { class: "group tools", role: "group", "aria-label": "Tool" });
+    const tools = element("div", { class: "group tools", role: "group", "aria-label": "Tool", "data-needs": "put" });
     for (const [tool, name, title] of TOOLS) {
       const button = element(
         "button", { type: "button", title, "aria-pressed": "false", onclick: () => this.choose(tool) },
@@ -85,15 +85,15 @@ export class Bar {
     this.noiseWords = element("output", { for: "noise", class: "speed-words" });
     root.append(
       tools,
-      element("div", { class: "group time", role: "group", "aria-label": "Time" }, this.play, this.stepButton,
+      element("div", { class: "group time", role: "group", "aria-label": "Time", "data-needs": "pace" }, this.play, this.stepButton,
         element("label", { class: "slide" }, element("span", { class: "caption" }, "Speed"), this.slider, this.speed)),
-      element("div", { class: "group", role: "group", "aria-label": "Faults" },
+      element("div", { class: "group", role: "group", "aria-label": "Faults", "data-needs": "noise" },
         element("label", { class: "slide" }, element("span", { class: "caption" }, "Lost bytes"), this.noise, this.noiseWords)),
     );
     top.append(
-      element("button", { type: "button", class: "compact", title: "Switch all tiles off and on (R)", onclick: () => deeds.restart() },
+      element("button", { type: "button", class: "compact", title: "Switch all tiles off and on (R)", "data-needs": "open", onclick: () => deeds.restart() },
         icon(ICONS.again), element("span", {}, "Start over")),
-      element("button", { type: "button", class: "primary", title: "Something else happens (S)", onclick: () => deeds.surprise() },
+      element("button", { type: "button", class: "primary", title: "Something else happens (S)", "data-needs": "arrange", onclick: () => deeds.surprise() },
         icon(ICONS.dice), element("span", {}, "Surprise me")),
     );
     this.choose("hand");

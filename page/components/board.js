@@ -82,7 +82,7 @@ export class Board {
     this.cables.resize(width, height);
     const gone = new Set(this.views.keys());
     for (const tile of laid) {
-        gone.delete(tile.port);
+      gone.delete(tile.port);
       let view = this.views.get(tile.port);
       if (!view) {
         view = new TileView(tile);
@@ -102,7 +102,7 @@ export class Board {
 
   arrangeSpots() {
     const gone = new Set(this.spots.keys());
-    for (const place of this.view.places()) {
+    for (const place of this.tiles.can("put") ? this.view.places() : []) {
       const key = place.join();
       if (this.tiles.at(...place)) continue;
       gone.delete(key);
@@ -170,7 +170,7 @@ export class Board {
         this.deeds.cut(tile.port, SIDES[side], !this.tiles.isCut(tile, side));
       }
     } else if (side !== undefined) {
-      this.rove([this.at[0] + OFFSETS[side][0], this.at[1] + OFFSETS[side][1]], true);
+      this.rove(this.next(side), true);
     } else if ((event.key === "Delete" || event.key === "Backspace") && tile) {
       this.deeds.pull(tile.port);
     } else if (event.key === "Escape" && this.selected) {
@@ -179,6 +179,18 @@ export class Board {
       return;
     }
     event.preventDefault();
+  }
+
+  /** The next place on a side; where none can be put in, the next tile there. @param {number} side @returns {Place} */
+  next(side) {
+    const [down, right] = OFFSETS[side];
+    if (this.tiles.can("put")) return [this.at[0] + down, this.at[1] + right];
+    /** @param {Place} place */
+    const way = ([row, col]) => (row - this.at[0]) * down + (col - this.at[1]) * right;
+    /** @param {Place} place */
+    const far = ([row, col]) => Math.abs(row - this.at[0]) + Math.abs(col - this.at[1]);
+    const ahead = this.tiles.laid().map((tile) => tile.place).filter((place) => way(place) > 0);
+    return ahead.sort((one, other) => 2 * far(one) - way(one) - 2 * far(other) + way(other))[0] ?? this.at;
   }
 
   /** @param {FocusEvent} event */
@@ -202,7 +214,7 @@ export class Board {
     const col = Math.max(view.left - 1, Math.min(view.left + view.cols, place[1]));
     for (const button of this.root.querySelectorAll("button[tabindex='0']")) button.setAttribute("tabindex", "-1");
     this.at = [row, col];
-    const button = this.buttonAt(this.at);
+    const button = this.buttonAt(this.at) ?? this.views.values().next().value?.button;
     button?.setAttribute("tabindex", "0");
     if (focus) button?.focus({ preventScroll: true });
   }

@@ -15,6 +15,9 @@ const MOST = 240;
 const EDGE = 0.43;
 const START = 0.34;
 
+/** The colour of a cable by its state. */
+export const TOKENS = { whole: "--cable", failing: "--failing", cut: "--cut" };
+
 /** @typedef {{x: number, y: number, dx: number, dy: number, from: number, ms: number, colour: string}} Flight */
 
 export class Cables {
@@ -107,8 +110,9 @@ export class Cables {
         pen.save();
         pen.translate(x + (right * view.size) / 2, y + (down * view.size) / 2);
         if (down) pen.rotate(Math.PI / 2);
-        const isCut = tiles.isCut(tile, side);
-        pen.strokeStyle = style.getPropertyValue(isCut ? "--cut" : "--cable");
+        const state = tiles.cableAt(tile, side);
+        const isCut = state === "cut";
+        pen.strokeStyle = style.getPropertyValue(TOKENS[state]);
         pen.lineWidth = Math.max(1, view.size * 0.022);
         for (const offset of [-1, 0, 1]) {
           const at = (offset * width) / 3;

@@ -1,6 +1,7 @@
 // The drawings to choose from; one slides under the running tiles.
 
-/** @import { Drawing } from "../stream/source.js" */
+/** @import { Drawing, Model } from "../stream/source.js" */
+/** @import { Tiles } from "../stream/tiles.js" */
 import { cellsOf } from "../stream/address.js";
 import { cssColour } from "../stream/led.js";
 import { element, svg } from "./dom.js";
@@ -19,16 +20,21 @@ function thumbnail(drawing, colour) {
 }
 
 export class Drawings {
-  /** @param {HTMLElement} root @param {(drawing: Drawing) => void} choose */
-  constructor(root, choose) {
+  /**
+   * @param {HTMLElement} root @param {(drawing: Drawing) => void} choose
+   * @param {(model: Model) => void} chooseModel
+   */
+  constructor(root, choose, chooseModel) {
     this.root = root;
     this.choose = choose;
+    this.chooseModel = chooseModel;
     /** @type {Map<string, HTMLButtonElement>} */
     this.buttons = new Map();
   }
 
-  /** @param {Drawing[]} drawings @param {(label: string) => number[]} colour duty of a label's class */
-  fill(drawings, colour) {
+  /** @param {Tiles} tiles */
+  fill(tiles) {
+    const { drawings } = tiles;
     this.buttons.clear();
     const heading = element("h2", { id: "drawings-title" }, "Drawings");
     const help = element("p", { class: "summary" }, "Choose one: it slides under the running tiles.");
@@ -45,13 +51,28 @@ export class Drawings {
           type: "button", "aria-pressed": "false", "aria-label": `${one.label}, ${one.name}`, title: one.name,
           onclick: () => this.choose(one),
         });
-        button.append(thumbnail(one, cssColour(colour(one.label))));
+        button.append(thumbnail(one, cssColour(tiles.look(one.label).rgb)));
         this.buttons.set(one.name, button);
         list.append(button);
       }
       return element("div", { class: "file" }, element("h3", {}, file.replaceAll("-", " ")), list);
     });
-    this.root.replaceChildren(heading, help, ...parts);
+    this.root.replaceChildren(...this.models(tiles), heading, help, ...parts);
+  }
+
+  /** The choice of a model, where there is one. @param {Tiles} tiles */
+  models({ models, model }) {
+    if (models.length < 2) return [];
+    const options = models.map(({ name, labels }) =>
+      element("option", { value: name, selected: name === model }, `${name}: ${labels.join(" ")}`));
+    const select = element("select", {
+      id: "model",
+      onchange: () => {
+        const chosen = models.find(({ name }) => name === select.value);
+        if (chosen) this.chooseModel(chosen);
+      },
+    }, ...options);
+    return [element("label", { class: "model", for: "model" }, element("span", {}, "Model"), select)];
   }
 
   /** @param {string} name of the drawing that lies on the board; "" for none of them */

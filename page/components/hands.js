@@ -1,7 +1,8 @@
 // What a pointer does on the board: pick up a tile, draw, cut. Knows places, and no elements of tiles.
 
 /** @import { Place } from "../stream/source.js" */
-/** @import { Tile, Tiles } from "../stream/tiles.js" */
+/** @import { Tile } from "../stream/tile.js" */
+/** @import { Tiles } from "../stream/tiles.js" */
 /** @import { View } from "./view.js" */
 import { OFFSETS, SIDES } from "../stream/source.js";
 
@@ -114,7 +115,7 @@ export class Hands {
       }
       grip.points.push(at);
       this.deeds.stroke(grip.points.slice(-40));
-    } else if (this.tool === "hand" && grip.tile && grip.moved) {
+    } else if (this.tool === "hand" && grip.tile && grip.moved && this.tiles.can("move")) {
       const place = this.isInside(at) ? this.view.placeAt(...at) : null;
       this.deeds.lift(grip.tile.port, at[0] - grip.start[0], at[1] - grip.start[1], place);
     }
@@ -130,8 +131,8 @@ export class Hands {
       const place = this.view.placeAt(...at);
       if (!grip.moved) {
         if (grip.tile) this.deeds.select(grip.tile.port);
-        else this.deeds.put(place);
-      } else if (grip.tile) {
+        else if (this.tiles.can("put")) this.deeds.put(place);
+      } else if (grip.tile && this.tiles.can("move")) {
         if (!this.isInside(at)) this.deeds.pull(grip.tile.port);
         else if (!this.tiles.at(...place)) this.deeds.move(grip.tile.port, place);
       }

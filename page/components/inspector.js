@@ -1,10 +1,13 @@
 // What is in one tile: its guess and how sure it is, its channels, its links, its counters.
 
-/** @import { Tile, Tiles } from "../stream/tiles.js" */
+/** @import { Tile } from "../stream/tile.js" */
+/** @import { Tiles } from "../stream/tiles.js" */
 import { MESSAGE_OFFSET } from "../stream/sentences.js";
 import { SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
 import { element, setText } from "./dom.js";
+import { offerOnly } from "./offer.js";
+import { Settings } from "./settings.js";
 
 const FULL = 127; // the largest message
 const SIDE_NAMES = ["North", "East", "South", "West"];
@@ -16,6 +19,9 @@ const SIDE_NAMES = ["North", "East", "South", "West"];
  *   power: (port: string, on: boolean) => void,
  *   freeze: (port: string, on: boolean) => void,
  *   reset: (port: string) => void,
+ *   press: (port: string) => void,
+ *   blink: (port: string) => void,
+ *   set: import("./settings.js").Set,
  *   cut: (port: string, side: string, on: boolean) => void,
  * }} InspectorDeeds
  */
@@ -52,16 +58,19 @@ export class Inspector {
     this.links = [];
     /** @type {HTMLButtonElement[]} */
     this.cables = [];
+    /** @type {HTMLElement[]} */
+    this.arrives = [];
     this.facts = element("dl", { class: "facts" });
     this.guess = element("p", { class: "guess" });
-    /** @param {() => void} act */
-    const button = (act) => element("button", { type: "button", onclick: act });
-    this.power = button(() => deeds.power(this.port, !this.tile?.powered));
-    this.freeze = button(() => deeds.freeze(this.port, !this.tile?.frozen));
-    this.reset = button(() => deeds.reset(this.port));
-    this.pull = button(() => deeds.pull(this.port));
-    this.reset.textContent = "Reset";
-    this.pull.textContent = "Pull out";
+    /** @param {string} text @param {string} needs @param {() => void} act */
+    const button = (text, needs, act) => element("button", { type: "button", "data-needs": needs, onclick: act }, text);
+    this.pull = button("Pull out", "pull", () => deeds.pull(this.port));
+    this.power = button("", "power", () => deeds.power(this.port, !this.tile?.powered));
+    this.freeze = button("", "freeze", () => deeds.freeze(this.port, !this.tile?.frozen));
+    this.reset = button("Reset", "reset", () => deeds.reset(this.port));
+    this.press = button("Press button", "restart", () => deeds.press(this.port));
+    this.blink = button("Blink", "blink", () => deeds.blink(this.port));
+    this.settings = new Settings(tiles, deeds.set, () => this.port);
   }
 
   /** @param {string | null} port */
@@ -79,17 +88,18 @@ export class Inspector {
   update() {
     const { tile } = this;
     if (this.root.hidden || !tile) return;
-    const shape = `${this.port} ${tile.channels} ${tile.classes} ${this.tiles.runs}`;
+    const shape = `${this.port} ${tile.number} ${tile.channels} ${tile.classes} ${this.tiles.runs} ${this.tiles.looks.length}`;
     if (shape !== this.shape) {
       this.shape = shape;
       this.build(tile);
     }
     const look = tile.label === "" ? "nothing" : tile.label === "-" ? "a dash" : tile.label;
     const sure = tile.margin === null ? "" : `, ${sureness(tile.margin)}`;
-    setText(this.guess, tile.powered ? `It shows ${look}${sure}` : "It has no power");
+    setText(this.guess, tile.powered ? `It shows ${look}${sure}` : awayWords(tile));
     setText(this.power, tile.powered ? "Power off" : "Power on");
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
-    this.freeze.disabled = this.reset.disabled = !tile.powered;
+    for (const one of [this.freeze, this.reset, this.press, this.blink]) one.disabled = !tile.powered;
+    this.settings.update();
     this.meters.forEach((meter, index) => meter.show(
       tile.state.length ? tile.state[index] - MESSAGE_OFFSET : undefined,
     ));
@@ -112,21 +122,25 @@ export class Inspector {
       const now = this.tile;
       if (now) deeds.cut(now.port, SIDES[side], !this.tiles.isCut(now, side));
     } }));
+    this.arrives = SIDE_NAMES.map(() => element("span"));
+    const isOurs = this.tiles.can("cut");
     const table = element("table", { class: "links" },
-      element("thead", {}, element("tr", {}, ...["Side", "Neighbour", "Heard", "Lost", "Cable"].map((name) => element("th", { scope: "col" }, name)))),
+      element("thead", {}, element("tr", {}, ...["Side", "Neighbour", "Heard", "Lost", isOurs ? "Cable" : "Arrives"].map((name) => element("th", { scope: "col" }, name)))),
       element("tbody", {}, ...SIDE_NAMES.map((name, side) => element("tr", {},
-        element("th", { scope: "row" }, name), ...this.links[side], element("td", {}, this.cables[side])))));
+        element("th", { scope: "row" }, name), ...this.links[side], element("td", {}, isOurs ? this.cables[side] : this.arrives[side])))));
     const scores = element("ul", { class: "meters scores", "aria-label": "Scores of the classes" }, ...this.meters.slice(hidden).map((meter) => meter.row));
     const others = element("ul", { class: "meters", "aria-label": "Hidden channels" }, ...this.meters.slice(0, hidden).map((meter) => meter.row));
     this.root.replaceChildren(
-      element("header", {}, element("h2", {}, `Tile ${tile.number}`), close),
+      element("header", {}, element("h2", {}, tile.number ? `Tile ${tile.number}` : tile.port), close),
       this.guess,
-      element("div", { class: "deeds" }, this.pull, this.power, this.freeze, this.reset),
+      element("div", { class: "deeds" }, this.pull, this.power, this.freeze, this.reset, this.press, this.blink),
       element("h3", {}, "What it thinks"), scores,
       element("h3", {}, "Hidden channels"), others,
       element("h3", {}, "Links"), table,
       element("h3", {}, "Counters"), this.facts,
+      element("section", { "data-needs": "set", "aria-label": "Settings" }, element("h3", {}, "Settings"), this.settings.root),
     );
+    offerOnly(this.tiles);
   }
 
   /** @param {Tile} tile */
@@ -135,6 +149,8 @@ export class Inspector {
       const link = tile.link[SIDES[side]];
       const other = this.tiles.neighbour(tile, side);
       const [neighbour, heard, lost] = this.links[side];
+      const [mark, good] = tile.health[SIDES[side]] ?? ["", null];
+      setText(this.arrives[side], mark === "dead" ? "nothing" : mark === "foreign" ? "another model" : good === null ? "" : `${Math.round(good * 100)} %`);
       setText(neighbour, other ? `tile ${other.number}` : "none");
       const isKnown = link && (other || link.received > 0);
       setText(heard, isKnown ? String(link.received) : "");
@@ -158,6 +174,7 @@ export class Inspector {
       ["Awake", time ? `${(time.awakePermille / 10).toFixed(0)} % of the time` : ""],
       ["Stack", time ? `${time.stackUnused} bytes never used` : ""],
       ["Model", tile.modelId],
+      ["Port", this.tiles.kind === "watched" ? tile.port : ""],
       ["Error", tile.error],
     ].filter(([, value]) => value !== "");
     if (this.facts.childElementCount !== facts.length * 2) {
@@ -168,6 +185,12 @@ export class Inspector {
       setText(this.facts.children[2 * index + 1], value);
     });
   }
+}
+
+/** Why it cannot be heard. @param {Tile} tile */
+function awayWords(tile) {
+  if (!tile.trouble) return "It has no power";
+  return tile.trouble === "away" ? `It is away: ${tile.reason}` : `It has ${tile.trouble}`;
 }
 
 /** @param {number} margin the best score less the second best, 0..254 */

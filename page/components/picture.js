@@ -3,6 +3,7 @@
 /** @import { Tiles } from "../stream/tiles.js" */
 import { OFFSETS, SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
+import { TOKENS } from "./cables.js";
 import { LAMPS, SEGMENTS } from "./tile.js";
 
 const TILE = 120; // pixels of a tile's place
@@ -15,7 +16,7 @@ const LEAST = 480;
 
 /**
  * @param {CanvasRenderingContext2D} pen at the corner of a tile's face of 100 x 100
- * @param {import("../stream/tiles.js").Tile} tile
+ * @param {import("../stream/tile.js").Tile} tile
  * @param {Token} token
  */
 function drawTile(pen, tile, token) {
@@ -56,14 +57,15 @@ function drawTile(pen, tile, token) {
 
 /**
  * @param {CanvasRenderingContext2D} pen at the middle of a tile's place
- * @param {Tiles} tiles @param {import("../stream/tiles.js").Tile} tile @param {Token} token
+ * @param {Tiles} tiles @param {import("../stream/tile.js").Tile} tile @param {Token} token
  */
 function drawCables(pen, tiles, tile, token) {
   for (const side of [1, 2]) {
     if (!tiles.neighbour(tile, side)) continue;
     const [down, right] = OFFSETS[side];
-    const isCut = tiles.isCut(tile, side);
-    pen.strokeStyle = token(isCut ? "--cut" : "--cable");
+    const state = tiles.cableAt(tile, side);
+    const isCut = state === "cut";
+    pen.strokeStyle = token(TOKENS[state]);
     pen.lineWidth = 2;
     for (const aside of [-6, 0, 6]) {
       const [x, y] = [(right * TILE) / 2 + down * aside, (down * TILE) / 2 + right * aside];

@@ -3,12 +3,14 @@
 /** @import { Tiles } from "../stream/tiles.js" */
 /** @import { Recorder } from "../stream/recorder.js" */
 /** @import { StreamEvent } from "../stream/source.js" */
-import { parseRecording } from "../stream/recording.js";
+import { parseRecording } from "../stream/recording_file.js";
 import { byId, element, icon } from "./dom.js";
 import { boardPicture } from "./picture.js";
 
 const ICON = "M12 15V4M8 8l4-4 4 4M5 12v7h14v-7";
 const JSON_LINES = "application/jsonl";
+// Twin of HOLE in host/tilenca/page/alone.py.
+const HOLE = "<!-- the recording -->";
 
 /**
  * @typedef {{
@@ -16,6 +18,8 @@ const JSON_LINES = "application/jsonl";
  *   words: () => string,
  *   say: (text: string) => void,
  *   replay: (events: StreamEvent[]) => void,
+ *   compare: () => void,
+ *   canAlone: () => boolean,
  * }} ShareDeeds
  */
 
@@ -41,12 +45,17 @@ export class Share {
     /** @param {string} text @param {string} help @param {() => void} act */
     const row = (text, help, act) => element("div", { class: "row" },
       element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
+    this.alone = row("Web page", "This run until now, as one file that replays in any browser", () => this.page());
+    this.compare = row("Compare", "Two runs side by side: another model, drawing, seed, or more lost bytes", () => deeds.compare());
+    this.compare.dataset.needs = "arrange";
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
-      element("div", { class: "row" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
+      element("div", { class: "row", "data-needs": "arrange" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
       row("Picture", "The board as it is now, as PNG", () => this.picture()),
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
+      this.alone,
+      this.compare,
       row("Replay a file…", "Shows a recording instead of running tiles", () => this.file.click()),
       this.file,
     );
@@ -57,6 +66,7 @@ export class Share {
   }
 
   show() {
+    this.alone.hidden = !this.deeds.canAlone();
     this.link.value = this.deeds.link();
     this.dialog.showModal();
     this.link.select();
@@ -77,8 +87,29 @@ export class Share {
     return `tilenca-${this.tiles.seed}-${this.tiles.time.toFixed(2)}s.${kind}`;
   }
 
-  async picture() {
-    download(await boardPicture(this.tiles, this.deeds.words()), this.nameOf("png"));
+  /** Does something that may fail, and says why. @param {() => Promise<void>} act */
+  async attempt(act) {
+    try {
+      await act();
+    } catch (error) {
+      this.deeds.say(`It did not work: ${error instanceof Error ? error.message : error}`);
+    }
+  }
+
+  picture() {
+    return this.attempt(async () => download(await boardPicture(this.tiles, this.deeds.words()), this.nameOf("png")));
+  }
+
+  /** The page with the recording in it. */
+  page() {
+    return this.attempt(async () => {
+      const answer = await fetch("alone.html");
+      if (!answer.ok) throw new Error(`alone.html: ${answer.status}`);
+      const lines = this.recorder.text().replaceAll("<", "\\u003c");
+      const script = `<script type="application/jsonl" id="recording">\n${lines}</script>`;
+      const document = (await answer.text()).replace(HOLE, () => script);
+      download(new Blob([document], { type: "text/html" }), this.nameOf("html"));
+    });
   }
 
   record() {

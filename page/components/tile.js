@@ -1,6 +1,6 @@
 // One tile as the board looks: its digit, its light, the lamps of its links, its counters.
 
-/** @import { Tile } from "../stream/tiles.js" */
+/** @import { Tile } from "../stream/tile.js" */
 import { SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
 import { element, setText, svg } from "./dom.js";
@@ -47,9 +47,9 @@ export class TileView {
       this.button.classList.toggle("dark", tile.rgb.every((part) => part === 0));
     }
     this.lamps.forEach((lamp, side) => lamp.classList.toggle("on", tile.leds[side] === SIDES[side]));
-    setText(this.id, String(tile.number));
+    setText(this.id, tile.number ? String(tile.number) : "?");
     setText(this.counter, tile.powered ? String(tile.updates) : "");
-    const mark = !tile.powered ? "off" : tile.frozen ? "frozen" : "";
+    const mark = tile.trouble || (!tile.powered ? "off" : tile.frozen ? "frozen" : "");
     this.button.dataset.state = mark;
     setText(this.mark, mark);
     const words = describe(tile);
@@ -65,8 +65,8 @@ export class TileView {
 function describe(tile) {
   const links = SIDE_WORDS.filter((_, side) => tile.leds[side] === SIDES[side]);
   const place = tile.place ? `, row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : "";
-  if (!tile.powered) return `Tile ${tile.number}${place}, no power`;
+  if (!tile.powered) return `Tile ${tile.number}${place}, ${tile.trouble ? `${tile.trouble}, ${tile.reason}` : "no power"}`;
   const shows = tile.label === "" ? "shows nothing yet" : tile.label === "-" ? "shows a dash" : `shows ${tile.label}`;
   const linked = links.length ? `linked ${links.join(", ")}` : "no links";
-  return `Tile ${tile.number}${place}, ${shows}, ${linked}${tile.frozen ? ", frozen" : ""}`;
+  return [`Tile ${tile.number}${place}`, shows, linked, tile.frozen ? "frozen" : "", tile.trouble].filter(Boolean).join(", ");
 }

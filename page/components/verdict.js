@@ -18,23 +18,28 @@ const named = (label) => (label === "-" ? "a dash" : label);
 export function verdictOn(tiles) {
   const { counts, total } = tiles.count();
   const dark = counts.get("") ?? 0;
+  const laid = tiles.laid();
+  const lost = tiles.kind === "watched" ? laid.filter((tile) => tile.trouble).length : 0;
+  const away = lost ? `, ${lost} ${lost === 1 ? "is" : "are"} not heard` : "";
   counts.delete("");
   const ranked = [...counts].sort((a, b) => b[1] - a[1]);
+  if (tiles.source === "building") return { text: `Building the firmware of ${tiles.model}`, label: "", agreed: false };
   if (total === 0) {
-    const text = tiles.laid().length ? "No tile has power" : "The board is empty: click a place to put a tile";
-    const boot = tiles.laid().length > 0 && tiles.history.changes.length === 0;
+    if (tiles.kind === "watched") return { text: laid.length ? "No tile is heard" : "No tile yet", label: "", agreed: false };
+    const text = laid.length ? "No tile has power" : "The board is empty: click a place to put a tile";
+    const boot = laid.length > 0 && tiles.history.changes.length === 0;
     return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
   }
-  if (!ranked.length) return { text: "The tiles boot", label: "", agreed: false };
+  if (!ranked.length) return { text: `The tiles boot${away}`, label: "", agreed: false };
   const [label, most] = ranked[0];
   if (most === total) {
     const who = total === 1 ? "One tile shows" : `All ${total} tiles show`;
-    const drawn = known(tiles.laid().map((tile) => tile.place), tiles.drawings);
+    const drawn = known(laid.map((tile) => tile.place), tiles.drawings);
     const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
-    return { text: `${who} ${named(label)}${but}`, label, agreed: true };
+    return { text: `${who} ${named(label)}${but}${away}`, label, agreed: true };
   }
   const waiting = dark ? `, ${dark} ${dark === 1 ? "boots" : "boot"}` : "";
-  return { text: `${most} of ${total} show ${named(label)}${waiting}`, label, agreed: false };
+  return { text: `${most} of ${total} show ${named(label)}${waiting}${away}`, label, agreed: false };
 }
 
 export class Verdict {

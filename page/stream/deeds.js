@@ -43,6 +43,15 @@ const KINDS = {
   freeze: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
   reset: { write: ({ port }) => [numberOf(port)], read: ([tile]) => ({ port: portOf(tile) }) },
   noise: { write: ({ loss }) => [loss], read: ([loss]) => ({ loss: Number(loss) }) },
+  blink: {
+    write: ({ port, seconds }) => [numberOf(port), seconds],
+    read: ([tile, seconds]) => ({ port: portOf(tile), seconds: Number(seconds) }),
+  },
+  restart: { write: ({ port }) => [numberOf(port)], read: ([tile]) => ({ port: portOf(tile) }) },
+  set: {
+    write: ({ name, value, port }) => [name, value, ...(port === null ? [] : [numberOf(port)])],
+    read: ([name, value, tile]) => ({ name, value: Number(value), port: tile === undefined ? null : portOf(tile) }),
+  },
 };
 
 /** @param {Deed} deed */

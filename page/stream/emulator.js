@@ -4,14 +4,12 @@
 import { Batches } from "./batches.js";
 import { BROKE_OFF } from "./source.js";
 
-const PROGRAM = new URL("../emulator/stream/worker.js", import.meta.url);
-
 /**
  * @param {Listener} listener told of events once for every frame that the browser paints
  * @returns {Source}
  */
 export function openEmulator(listener) {
-  const worker = new Worker(PROGRAM, { type: "module" });
+  const worker = new Worker(new URL("../emulator/stream/worker.js", import.meta.url), { type: "module" });
   /** @type {Source["send"]} */
   const send = (command) => worker.postMessage(command);
   const batches = new Batches(listener.onEvents, send);

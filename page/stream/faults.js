@@ -1,7 +1,8 @@
 // The faults of a run that begins with what lies on the board now, as `tilenca emulate --fault` takes them.
 
 /** @import { Command } from "./source.js" */
-/** @import { LaidTile, Tiles } from "./tiles.js" */
+/** @import { LaidTile } from "./tile.js" */
+/** @import { Tiles } from "./tiles.js" */
 import { SIDES } from "./source.js";
 
 // KIND[=VALUE]@WHERE[:TIMES]

@@ -1,49 +1,47 @@
 // The source that is a recording: its events again, at any speed, forwards and backwards. No hand changes it.
 
 /** @import { Listener, Source, StreamEvent } from "./source.js" */
-import { STREAM_VERSION } from "./source.js";
+import { parseRecording } from "./recording_file.js";
 
 const FULL_SPEED = 20; // where one asks for as fast as it can
-const FIXED = "This is a recording: nothing can be changed in it. Reload the page for running tiles.";
+const TAKES = ["open", "pace", "step", "seek", "rest"];
 
-/**
- * The events of a file: the first one of the stream, and those of the run.
- * @param {string} text
- * @returns {StreamEvent[]}
- * @throws {Error} it is none; in words for a person
- */
-export function parseRecording(text) {
-  /** @type {StreamEvent[]} */
-  const events = [];
-  text.split("\n").forEach((line, index) => {
-    if (line.trim() === "") return;
-    /** @type {any} */
-    let event = null;
-    try {
-      event = JSON.parse(line);
-    } catch {
-      // said below
-    }
-    if (typeof event !== "object" || event === null || typeof event.time !== "number") {
-      throw new Error(`line ${index + 1} is no event; choose a recording (.jsonl)`);
-    }
-    events.push(event);
-  });
-  const [first, run] = events;
-  if (first?.stream === undefined || !run?.run) {
-    throw new Error("it does not begin as a recording of the page does; choose another one");
-  }
-  if (first.stream !== STREAM_VERSION) throw new Error(`it has version ${first.stream}, this page ${STREAM_VERSION}`);
-  return events;
-}
-
-/** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event */
-function subjectOf(event) {
-  const kind = ["place", "open", "display", "cable"].find((one) => one in event);
+/** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event @param {number} place */
+function subjectOf(event, place) {
+  if (event.note !== undefined) return `note ${place}`;
+  const kind = ["place", "open", "display", "cable", "health", "classes"].find((one) => one in event);
   if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
   if (event.raw === undefined) return "";
   const [name, , side] = event.raw.split(",");
   return `raw ${event.port} ${name === "$LINK" ? `${name} ${side}` : name}`;
+}
+
+/**
+ * The recording that lies in the document, or beside it.
+ * @param {Listener} listener
+ * @returns {Source}
+ */
+export function openOwnRecording(listener) {
+  /** @type {Source | null} */
+  let source = null;
+  let isClosed = false;
+  const inside = document.getElementById("recording");
+  const token = new URLSearchParams(location.hash.slice(1)).get("token");
+  /** @param {string} text */
+  const begin = (text) => {
+    if (!isClosed) source = openRecording(parseRecording(text), listener);
+  };
+  const read = async () => (inside ? inside.textContent ?? "" : (await fetch(`recording.jsonl${token ? `?token=${token}` : ""}`)).text());
+  read().then(begin).catch((error) => {
+    listener.onEvents([{ time: 0, refused: `The recording cannot be shown: ${error instanceof Error ? error.message : error}` }]);
+  });
+  return {
+    send: (command) => source?.send(command),
+    close: () => {
+      isClosed = true;
+      source?.close();
+    },
+  };
 }
 
 /**
@@ -57,7 +55,7 @@ export function openRecording(recorded, listener) {
   const end = Math.max(0, ...rest.slice(-1).map((event) => event.time), events.at(-1)?.time ?? 0);
   let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
   /** @type {StreamEvent[]} */
-  let waiting = [{ ...first, source: "recording" }];
+  let waiting = [{ ...first, source: "recording", of: first.source, takes: TAKES }];
   let before = performance.now();
   let frame = requestAnimationFrame(tick);
 
@@ -79,7 +77,7 @@ export function openRecording(recorded, listener) {
     /** @type {Map<string, StreamEvent>} */
     const last = new Map();
     for (place = 0; place < events.length && events[place].time <= wanted; place++) {
-      const subject = subjectOf(events[place]);
+      const subject = subjectOf(events[place], place);
       last.delete(subject); // so that it comes where the latest one does
       if (subject) last.set(subject, events[place]);
     }
@@ -125,9 +123,7 @@ export function openRecording(recorded, listener) {
   };
   return {
     send(command) {
-      const obey = obeyed[command.do];
-      if (obey) obey(command);
-      else tell({ time, refused: FIXED });
+      obeyed[command.do]?.(command);
     },
     close: () => cancelAnimationFrame(frame),
   };

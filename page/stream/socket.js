@@ -10,24 +10,27 @@ const LONGEST_WAIT_MS = 8000;
 const FINAL = [WRONG_TOKEN, BROKE_OFF];
 
 /**
- * The stream of the server that the page has come from, with the token of its address.
+ * The stream of the server that the page has come from, with the token and the model of its address.
  * @param {Listener} listener
  */
 export function openServer(listener) {
-  const token = new URLSearchParams(location.hash.slice(1)).get("token");
-  const url = new URL("stream", location.href);
-  url.protocol = url.protocol.replace("http", "ws");
-  url.search = token ? new URLSearchParams({ token }).toString() : "";
-  url.hash = "";
-  return openSocket(url.href, listener);
+  return openSocket(() => {
+    const token = new URLSearchParams(location.hash.slice(1)).get("token");
+    const model = new URLSearchParams(location.search).get("model");
+    const url = new URL("stream", location.href);
+    url.protocol = url.protocol.replace("http", "ws");
+    url.search = new URLSearchParams({ ...(token && { token }), ...(model && { model }) }).toString();
+    url.hash = "";
+    return url.href;
+  }, listener);
 }
 
 /**
- * @param {string} url of the stream, ws: or wss:
+ * @param {() => string} urlNow of the stream, ws: or wss:
  * @param {Listener} listener told of events once for every frame that the browser paints
  * @returns {Source}
  */
-export function openSocket(url, listener) {
+export function openSocket(urlNow, listener) {
   /** @type {WebSocket | null} */
   let socket = null;
   let waitMs = FIRST_WAIT_MS;
@@ -40,7 +43,7 @@ export function openSocket(url, listener) {
   }
 
   function connect() {
-    socket = new WebSocket(url);
+    socket = new WebSocket(urlNow());
     socket.onmessage = (message) => {
       const told = JSON.parse(message.data);
       if (told.events.some((/** @type {StreamEvent} */ event) => event.stream !== undefined)) {

@@ -4,23 +4,27 @@
 /**
  * @typedef {{label: string, segments: number, rgb: number[]}} Look
  * @typedef {{name: string, label: string, rows: string[]}} Drawing
+ * @typedef {{name: string, id: string, labels: string[]}} Model
  * @typedef {[number, number]} Place
  *
  * One event: a time, and exactly one of the other subjects.
  * @typedef {{
  *   time: number, port?: string, side?: string,
- *   stream?: number, source?: string, looks?: Look[], drawings?: Drawing[], period_ms?: number | null,
- *   most_tiles?: number, most_place?: number,
- *   run?: {seed: number, shape: string, tiles: number},
+ *   stream?: number, source?: string, of?: string, takes?: string[], looks?: Look[], drawings?: Drawing[], period_ms?: number | null,
+ *   most_tiles?: number, most_place?: number, models?: Model[], model?: string,
+ *   run?: {seed: number, shape: string, tiles: number, began?: number},
  *   jump?: {from: number},
  *   deed?: Command,
  *   pace?: {speed: number, paused: boolean, share: number, end?: number},
- *   place?: Place | null,
+ *   place?: Place | null, tile?: number,
  *   cable?: "whole" | "cut",
- *   raw?: string,
+ *   raw?: string, asked?: boolean,
  *   open?: boolean, reason?: string,
  *   display?: {segments: number, rgb: number[], leds: string},
  *   frame?: string,
+ *   classes?: Look[],
+ *   health?: {trouble: string, links: Record<string, [string, number | null]>},
+ *   note?: string, bad?: boolean,
  *   refused?: string,
  * }} StreamEvent
  *

@@ -1,35 +1,17 @@
 // What the page knows of the tiles: the stream's events, added up.
 
-/** @import { Drawing, Look, Place, StreamEvent } from "./source.js" */
-/** @import { LinkSentence, TimeSentence } from "./sentences.js" */
+/** @import { Drawing, Look, Model, Place, StreamEvent } from "./source.js" */
+/** @import { LaidTile, Tile } from "./tile.js" */
 import { parseFrame } from "./frames.js";
 import { parseSentence } from "./sentences.js";
 import { History } from "./history.js";
 import { OFFSETS, SIDES, STREAM_VERSION } from "./source.js";
+import { forget, hear, newTile } from "./tile.js";
 
-/**
- * @typedef {{
- *   port: string, number: number, place: Place | null, powered: boolean, frozen: boolean,
- *   segments: number, rgb: number[], leds: string,
- *   label: string, margin: number | null, links: string, state: number[], updates: number, uptimeMs: number,
- *   modelId: string, channels: number, classes: number, periodMs: number,
- *   link: Record<string, LinkSentence>, time: TimeSentence | null, error: string, countSide: number,
- * }} Tile
- *
- * @typedef {Tile & {place: Place}} LaidTile
- *
- * @typedef {{from: string, side: number, bytes: number}} Pulse
- */
+/** @typedef {{from: string, side: number, bytes: number}} Pulse */
+/** A line of the log. @typedef {{time: number, port: string, text: string, bad: boolean}} Note */
 
-/** @param {string} port @returns {Tile} */
-function newTile(port) {
-  return {
-    port, number: Number(/(\d+)$/.exec(port)?.[1] ?? 0), place: null, powered: false, frozen: false,
-    segments: 0, rgb: [0, 0, 0], leds: "----",
-    label: "", margin: null, links: "----", state: [], updates: 0, uptimeMs: 0,
-    modelId: "", channels: 0, classes: 0, periodMs: 0, link: {}, time: null, error: "", countSide: -1,
-  };
-}
+const MOST_NOTES = 200;
 
 export class Tiles {
   constructor() {
@@ -43,8 +25,17 @@ export class Tiles {
     this.looks = [];
     /** @type {Drawing[]} */
     this.drawings = [];
-    /** What they are: "emulated", or a "recording". */
+    /** Those that one can choose from, and the name of the one that runs. @type {Model[]} */
+    this.models = [];
+    this.model = "";
+    /** What they are: "emulated", "watched", or a "recording". */
     this.source = "";
+    /** Of a recording, what was recorded; else the same. */
+    this.kind = "";
+    /** The commands that the source takes; null: all of them. @type {Set<string> | null} */
+    this.takes = null;
+    /** The log of real tiles, the latest line last. @type {Note[]} */
+    this.notes = [];
     this.mostTiles = 0;
     this.mostPlace = 0;
     this.stepS = 0.02;
@@ -57,6 +48,8 @@ export class Tiles {
     /** How often the run was taken to another time. */
     this.jumps = 0;
     this.seed = 0;
+    /** The time 0 of real tiles, in seconds since 1970. */
+    this.began = 0;
     this.runs = 0;
     this.startTiles = 0;
     this.history = new History();
@@ -84,13 +77,17 @@ export class Tiles {
     if (event.stream !== undefined) {
       if (event.stream !== STREAM_VERSION) this.refused = `The server speaks version ${event.stream}: reload the page.`;
       this.source = event.source ?? "";
+      this.kind = event.of ?? this.source;
+      this.takes = event.takes ? new Set(event.takes) : null;
       this.looks = event.looks ?? [];
       this.drawings = event.drawings ?? [];
+      this.models = event.models ?? [];
+      this.model = event.model ?? "";
       this.mostTiles = event.most_tiles ?? 0;
       this.mostPlace = event.most_place ?? 0;
       this.stepS = (event.period_ms ?? 20) / 1000;
     } else if (event.run) {
-      this.begin(event.run.seed, event.run.tiles);
+      this.begin(event.run);
     } else if (event.deed) {
       this.deeds = [...this.deeds.filter(({ time }) => time <= event.time), { time: event.time, deed: event.deed }];
     } else if (event.jump) {
@@ -102,18 +99,22 @@ export class Tiles {
       this.history.pass(event.time, event.pace.end);
     } else if (event.refused !== undefined) {
       this.refused = event.refused;
+    } else if (event.classes) {
+      this.looks = event.classes;
     } else if (event.port !== undefined) {
       this.takeOfTile(event, this.tile(event.port));
     }
   }
 
-  /** @param {number} seed @param {number} tiles */
-  begin(seed, tiles) {
+  /** @param {{seed: number, tiles: number, began?: number}} run */
+  begin({ seed, tiles, began = 0 }) {
     this.jump(0);
     this.history = new History();
     this.deeds = [];
+    this.notes = [];
     this.end = null;
     this.seed = seed;
+    this.began = began;
     this.startTiles = tiles;
     this.runs++;
   }
@@ -124,6 +125,7 @@ export class Tiles {
     this.byPlace.clear();
     this.cut.clear();
     this.pulses = [];
+    this.notes = this.notes.filter((note) => note.time <= time);
     this.time = time;
     this.history.jumpedTo = time;
     this.jumps++;
@@ -142,16 +144,18 @@ export class Tiles {
   takeOfTile(event, tile) {
     this.dirty.add(tile.port);
     if (event.place !== undefined) {
+      if (event.tile !== undefined) tile.number = event.tile;
       this.lay(tile, event.place);
       if (!event.place) this.show(tile, event.time, "");
     } else if (event.open !== undefined) {
       tile.powered = event.open;
+      tile.reason = event.reason ?? "";
       tile.countSide = -1;
       this.version++;
       this.isMoved = true;
       if (!event.open) {
         this.show(tile, event.time, "");
-        Object.assign(tile, { updates: 0, margin: null, state: [], links: "----" });
+        forget(tile);
       }
     } else if (event.cable !== undefined) {
       const end = `${tile.port} ${event.side}`;
@@ -160,10 +164,17 @@ export class Tiles {
       this.isMoved = true;
     } else if (event.display) {
       Object.assign(tile, event.display);
+    } else if (event.health) {
+      if (tile.trouble !== event.health.trouble) this.version++;
+      tile.trouble = event.health.trouble;
+      tile.health = event.health.links;
+      this.isMoved = true; // cables show it
+    } else if (event.note !== undefined) {
+      this.notes = [...this.notes.slice(1 - MOST_NOTES), { time: event.time, port: tile.port, text: event.note, bad: event.bad === true }];
     } else if (event.frame !== undefined) {
       this.takeFrame(tile, SIDES.indexOf(event.side ?? ""), event.frame);
     } else if (event.raw !== undefined) {
-      this.takeSentence(tile, event.time, event.raw);
+      this.takeSentence(tile, event);
     }
   }
 
@@ -187,40 +198,14 @@ export class Tiles {
     else if (tile.countSide === side && !tile.frozen) tile.updates++;
   }
 
-  /** @param {Tile} tile @param {number} time @param {string} raw */
-  takeSentence(tile, time, raw) {
+  /** @param {Tile} tile @param {StreamEvent} event */
+  takeSentence(tile, { time, raw = "", asked }) {
     const sentence = parseSentence(raw);
-    switch (sentence?.name) {
-      case "HELLO":
-        Object.assign(tile, {
-          modelId: sentence.modelId, channels: sentence.channels, classes: sentence.classes,
-          periodMs: sentence.periodMs, frozen: sentence.updates > 0, updates: 0, margin: null, error: "",
-        });
-        this.show(tile, time, "");
-        break;
-      case "TILE":
-        tile.updates = sentence.updates;
-        tile.uptimeMs = sentence.uptimeMs;
-        tile.margin = sentence.margin;
-        tile.links = sentence.links;
-        tile.state = sentence.state;
-        this.show(tile, time, sentence.label);
-        break;
-      case "LINK":
-        tile.link[sentence.side] = sentence;
-        break;
-      case "TIME":
-        tile.time = sentence;
-        break;
-      case "ERROR":
-        tile.error = `${sentence.code}: ${sentence.text}`;
-        break;
-      case "ACK":
-        if (sentence.fields[0] === "SET" && sentence.fields[1] === "updates") {
-          tile.frozen = sentence.fields[2] !== "0";
-        }
-        break;
-    }
+    const label = hear(tile, sentence);
+    if (label !== null) this.show(tile, time, label);
+    if (sentence?.name !== "HELLO" || asked) return; // one that was asked for is no start
+    forget(tile);
+    this.show(tile, time, "");
   }
 
   /** @param {Tile} tile @param {number} time @param {string} label */
@@ -229,6 +214,11 @@ export class Tiles {
     this.history.note({ time, port: tile.port, from: tile.label, to: label });
     tile.label = label;
     this.version++;
+  }
+
+  /** Whether the source takes a command. @param {string} name of it */
+  can(name) {
+    return this.takes === null || this.takes.has(name);
   }
 
   /** The labels of the tiles on the board that have power, and how many show each. */
@@ -266,6 +256,18 @@ export class Tiles {
     const other = this.neighbour(tile, side);
     return this.cut.has(`${tile.port} ${SIDES[side]}`) ||
       (other !== undefined && this.cut.has(`${other.port} ${SIDES[(side + 2) % 4]}`));
+  }
+
+  /**
+   * How the cable at a side of a tile is: real tiles do not tell that it is cut, but that they hear nobody.
+   * @param {Tile} tile @param {number} side
+   * @returns {"whole" | "failing" | "cut"}
+   */
+  cableAt(tile, side) {
+    if (this.isCut(tile, side)) return "cut";
+    const marks = [tile.health[SIDES[side]], this.neighbour(tile, side)?.health[SIDES[(side + 2) % 4]]].map((one) => one?.[0]);
+    if (marks.includes("dead") || marks.includes("foreign")) return "cut";
+    return marks.includes("failing") ? "failing" : "whole";
   }
 
   /** The look of a label; a dark one where it is none. @param {string} label @returns {Look} */

@@ -90,7 +90,11 @@ def test_a_future_that_was_left_is_not_in_the_recording(shared: Visit, tmp_path:
 def test_what_is_no_recording_is_refused(shared: Visit, tmp_path: Path) -> None:
     for text, words in (
         ("{}", "line 1 is no event"),
-        ('{"time": 1, "port": "a", "raw": "$ASK*43"}', "does not begin as a recording of the page"),
+        (
+            '{"time": 0, "stream": 1, "source": ""}\n{"time": 0, "run": {"seed": -1}}',
+            "line 2 tells of a run",
+        ),
+        ('{"time": 1, "port": "a", "raw": "$ASK*43"}', "tilenca page --replay shows it"),
         ('{"time": 0, "stream": 99}\n{"time": 0, "run": {"seed": 1}}', "version 99"),
     ):
         file = tmp_path / "some.jsonl"

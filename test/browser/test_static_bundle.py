@@ -37,12 +37,7 @@ def site(bundle: Path, browser: Browser) -> Iterator[str]:
 
 def test_it_runs_by_itself_and_a_hand_reaches_in(visit: Visit, site: str) -> None:
     visit.page.goto(f"{site}?speed=0.5&spread=0.1")
-    visit.wait_for_verdict("All 16 tiles show 8")
-    start = visit.middle("[data-port=tile-11]")
-    visit.drag(start, (start[0] - 500, start[1]))
-    visit.wait_for_verdict("All 15 tiles show 9")
-    visit.page.locator(".spot[data-place='3,0']").click()
-    visit.wait_for_verdict("All 16 tiles show 8")
+    visit.nine_and_back()
     assert [url for url in visit.requests if not url.startswith(site)] == []
     assert Axe().run(visit.page).violations_count == 0
 

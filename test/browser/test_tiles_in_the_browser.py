@@ -30,12 +30,7 @@ def test_opened_it_runs_and_the_tiles_agree(visit: Visit, server: PageServer) ->
 def test_a_pulled_tile_makes_the_others_change_their_minds(visit: Visit, server: PageServer) -> None:
     """An 8 without the left tile of its fourth row is a 9; put in again, an 8."""
     visit.page.goto(server.url + QUICK)
-    visit.wait_for_verdict("All 16 tiles show 8")
-    start = visit.middle("[data-port=tile-11]")
-    visit.drag(start, (start[0] - 500, start[1]))
-    visit.wait_for_verdict("All 15 tiles show 9")
-    visit.page.locator(".spot[data-place='3,0']").click()
-    visit.wait_for_verdict("All 16 tiles show 8")
+    visit.nine_and_back()
 
 
 def test_a_tile_moves_where_it_is_dropped(visit: Visit, server: PageServer) -> None:

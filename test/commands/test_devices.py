@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tilenca.cli import main
-from tilenca.commands import monitor
+from tilenca.fleet import listen
 from tilenca.fleet.lock import port_lock
 
 
@@ -51,7 +51,7 @@ def test_no_device_exits_with_3_and_a_remedy(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(monitor, "PATIENCE_S", 0.0)
+    monkeypatch.setattr(listen, "PATIENCE_S", 0.0)
     assert main([command, "--port", str(tmp_path / pattern)]) == 3
     captured = capsys.readouterr()
     assert captured.out == ""

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from serial.tools.list_ports_common import ListPortInfo
 
 from support.page_server import page_server
-from support.web_socket import WebSocketClient
+from support.web_socket import WebSocketClient, get
 from tilenca import cli
 from tilenca.base import paths
+from tilenca.commands import page as commands_page
 from tilenca.commands.page import address
 
 
@@ -114,3 +116,58 @@ def test_the_bundle_loads_nothing_from_elsewhere() -> None:
     for path, text in texts.items():
         found = re.findall(r"(?:https?:)?//[\w.-]+\.\w+", text.replace("http://www.w3.org/2000/svg", ""))
         assert found == [], path
+
+
+def test_options_that_would_be_ignored_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for words, complaint in (
+        (["--record", "x"], "--record does nothing without --port"),
+        (["--tiles", "x"], "--tiles does nothing without --port"),
+        (["--html", "x"], "--html does nothing without --replay"),
+        (["--port", "x", "--elf", "y"], "--elf is for emulated tiles"),
+        (["--port", "x", "--model", "y"], "--model is for emulated tiles"),
+        (["--replay", "x", "--port", "y"], "--replay shows a recording, and no tiles"),
+        (["--replay", str(tmp_path / "none")], "No such file"),
+        (["--model", str(tmp_path / "none")], "none"),
+    ):
+        status, said = page(capsys, *words)
+        assert status == 2, words
+        assert complaint in said
+        assert said.count("\n") == 1
+    assert page(capsys, "--port", tmp_path / "none")[0] == 3
+
+
+def test_boards_on_usb_are_named_and_not_opened(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    board = ListPortInfo("/dev/ttyACM7")
+    board.vid, board.pid = 0x2341, 0x0042
+    monkeypatch.setattr(commands_page, "serial_ports", lambda: [board])
+    commands_page._tell_of_boards()
+    said = capsys.readouterr().err
+    assert said == (
+        "tilenca: these tiles are emulated; to watch those on USB: tilenca page --port /dev/ttyACM7\n"
+    )
+    monkeypatch.setattr(commands_page, "serial_ports", list)
+    commands_page._tell_of_boards()
+    assert capsys.readouterr().err == ""
+
+
+def test_a_recording_is_one_file_or_served(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    record, out = tmp_path / "run.jsonl", tmp_path / "run.html"
+    lines = '{"time": 0, "stream": 1, "source": "emulated"}\n{"time": 0, "run": {"seed": 1, "tiles": 0}}\n'
+    record.write_text(lines)
+    assert cli.main(["page", "--replay", str(record), "--html", str(out)]) == 0
+    assert capsys.readouterr().out == f"{out}\n"
+    assert '"stream": 1' in out.read_text()
+    assert cli.main(["page", "--replay", str(record), "--html", str(tmp_path / "no" / "run.html")]) == 1
+    with page_server(None, ["--replay", str(record)]) as server:
+        assert 'content="recording"' in get(server.address, "/").read().decode()
+        assert get(server.address, "/recording.jsonl").read().decode() == lines
+        assert get(server.address, "/alone.html").status == 200
+    with page_server(None, ["--replay", str(record)], listen="0.0.0.0:0") as server:
+        address = ("127.0.0.1", server.address[1])
+        assert get(address, "/recording.jsonl").status == 403
+        token = server.url.rpartition("=")[2]
+        assert get(address, f"/recording.jsonl?token={token}").status == 200

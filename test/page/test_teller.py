@@ -1,5 +1,6 @@
 """What the page is told: news once, and after a jump all that there is."""
 
+import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from tilenca.base.sides import EAST
 from tilenca.emulator.arrangement import Arrangement
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.greeting import firmware_settings
-from tilenca.page.teller import Teller
+from tilenca.page.teller import VOICE_BYTES, Teller
 from tilenca.protocol.stream import StreamEvent
 from tilenca.shapes.file import Shape
 
@@ -40,6 +41,25 @@ def test_news_is_told_once(told: tuple[Emulation, Arrangement, Teller]) -> None:
     assert [(event["port"], event["side"], event["cable"]) for event in teller.places()] == [
         ("tile-02", "E", "cut")
     ]
+
+
+def test_a_moment_stays_as_it_was_and_its_voices_are_as_large_as_is_said(
+    told: tuple[Emulation, Arrangement, Teller],
+) -> None:
+    emulation, _, teller = told
+    emulation.pass_time(0.2)
+    teller.look(frames=False)
+    said = teller.save()
+    before = [dict(voice.last) for voice in said]
+    tracemalloc.start()
+    many = [teller.save() for _ in range(100)]
+    size = tracemalloc.get_traced_memory()[0] / sum(map(len, many))
+    tracemalloc.stop()
+    assert 0.3 * VOICE_BYTES < size < 1.5 * VOICE_BYTES
+    emulation.pass_time(0.5)
+    teller.look(frames=False)
+    assert [voice.last for voice in said] == before
+    assert teller.save()[0].last != before[0]
 
 
 def test_after_a_jump_all_is_told_with_the_last_lines(

@@ -37,6 +37,10 @@ GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "freeze", "port": "tile-03", "on": False}, commands.Freeze("tile-03", False)),
     ({"do": "reset", "port": "tile-03"}, commands.Reset("tile-03")),
     ({"do": "noise", "loss": 0.25}, commands.Noise(0.25)),
+    ({"do": "blink", "port": "/dev/ttyACM0"}, commands.Blink("/dev/ttyACM0", 5)),
+    ({"do": "restart", "port": "tile-03"}, commands.Restart("tile-03")),
+    ({"do": "set", "name": "period", "value": 50}, commands.Set("period", 50, None)),
+    ({"do": "set", "name": "brightness", "value": 9, "port": "a"}, commands.Set("brightness", 9, "a")),
     ({"do": "seen", "batch": 12}, commands.Seen(12)),
 ]  # fmt: skip
 
@@ -72,6 +76,9 @@ def test_each_kind_is_among_them() -> None:
         ('{"do": "noise", "loss": 1.1}', "noise: loss must be a number in 0..1"),
         ('{"do": "cut", "port": "tile-01", "side": "NE"}', "must be one of N, E, S, W"),
         ('{"do": "rest", "on": 1}', "must be true or false"),
+        ('{"do": "set", "name": "id", "value": 1}', "name must be one of period, updates, brightness"),
+        ('{"do": "set", "name": "period", "value": 9}', "set: value must be a whole number in 10..10000"),
+        ('{"do": "blink", "port": "a", "seconds": 61}', "blink: seconds must be a whole number in 0..60"),
         ('{"do": "open", "cells": []}', "1 to 144 different places"),
         ('{"do": "open", "cells": [[0, 0], [0, 0]]}', "different places"),
         ('{"do": "open", "cells": [[0]]}', "[row, column] each"),

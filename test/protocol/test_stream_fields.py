@@ -25,7 +25,7 @@ BAD: list[tuple[must_be.Check, Any, str]] = [
     (must_be.number(0.5, 2), "1", "number in 0.5..2"),
     (must_be.number(0.5, 2, or_zero=True), 0.1, "or 0"),
     (must_be.switch, 1, "true or false"),
-    (must_be.text, "a\n", "1 to 64 characters"),
+    (must_be.text, "a\n", "1 to 256 characters"),
     (must_be.side, "NE", "one of N, E, S, W"),
     (must_be.cells, [[0, 1], [0, 1]], "different places"),
     (must_be.cells, [[0, 65]], "whole number in -64..64"),

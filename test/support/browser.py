@@ -127,6 +127,19 @@ class Visit:
         self.page.mouse.move(*end, steps=8)
         self.page.mouse.up()
 
+    def pull(self, port: str) -> None:
+        """Drags a tile off the board."""
+        x, y = self.middle(f"[data-port={port}]")
+        self.drag((x, y), (2, y))
+
+    def nine_and_back(self) -> None:
+        """Makes the 8 a 9, without the left tile of its fourth row, and an 8 again."""
+        self.wait_for_verdict("All 16 tiles show 8")
+        self.pull("tile-11")
+        self.wait_for_verdict("All 15 tiles show 9")
+        self.page.locator(".spot[data-place='3,0']").click()
+        self.wait_for_verdict("All 16 tiles show 8")
+
 
 @contextmanager
 def new_visit(browser: Browser, size: str = "laptop", scheme: str = "light") -> Iterator[Visit]:

@@ -38,9 +38,12 @@ class PageServer:
 
 
 @contextmanager
-def page_server(elf: Path, words: Sequence[str] = (), listen: str = "127.0.0.1:0") -> Iterator[PageServer]:
-    """Starts `tilenca page`, and ends it after the block if it still runs."""
-    command = [str(TILENCA), "page", "--listen", listen, "--no-open", "--elf", str(elf), *words]
+def page_server(
+    elf: Path | None, words: Sequence[str] = (), listen: str = "127.0.0.1:0"
+) -> Iterator[PageServer]:
+    """Starts `tilenca page`, without an image where it is to watch; it ends after the block at the latest."""
+    image = [] if elf is None else ["--elf", str(elf)]
+    command = [str(TILENCA), "page", "--listen", listen, "--no-open", *image, *words]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None

@@ -1,11 +1,13 @@
 """A port behind which a test speaks as a tile."""
 
 import os
+import select
 import tty
 from typing import Self
 
 from tilenca.protocol.sentences import TileSentence, format_sentence
 
+LIMIT_S = 60
 STATE = bytes([128]) * 21
 
 
@@ -15,6 +17,7 @@ class Tile:
     def __init__(self, tile: int) -> None:
         self.tile = tile
         self.updates = 0
+        self._told = b""
 
     def __enter__(self) -> Self:
         self._master, self._slave = os.openpty()
@@ -34,6 +37,15 @@ class Tile:
 
     def write(self, data: bytes) -> None:
         os.write(self._master, data)
+
+    def read_line(self) -> bytes:
+        """The next line that the tile is told, without its end; fails if none comes."""
+        while b"\n" not in self._told:
+            ready, _, _ = select.select([self._master], [], [], LIMIT_S)
+            assert ready, f"tile {self.tile} was told nothing but {self._told!r}"
+            self._told += os.read(self._master, 4096)
+        line, _, self._told = self._told.partition(b"\n")
+        return line.strip()
 
     def say(self, label: str = "4") -> None:
         self.updates += 1

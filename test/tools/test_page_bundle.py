@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from release.page_bundle import BEHIND, BundleError, lay_out, main, modules_of
+from release.page_bundle import BundleError, lay_out, main, modules_of
 from tilenca.base import paths
+from tilenca.page.alone import BEHIND
 
 
 @pytest.fixture
@@ -41,7 +42,7 @@ def test_it_has_the_page_the_emulator_and_what_is_offered(web: Path, tmp_path: P
         "firmware.elf",
         "offer.json",
     ]
-    assert files == page | {f"emulator/{name}" for name in beside}
+    assert files == page | {"alone.html"} | {f"emulator/{name}" for name in beside}
     assert BEHIND.format("emulator") in (out / "index.html").read_text()
     offer = json.loads((out / "emulator" / "offer.json").read_text())
     assert (offer["period_ms"], offer["updates"]) == (20, 0)

@@ -35,6 +35,10 @@ HANDS: list[dict[str, Any]] = [
     {"do": "reset", "port": "tile-05"},
     {"do": "power", "port": "tile-01", "on": True},
     {"do": "freeze", "port": "tile-02", "on": False},
+    {"do": "blink", "port": "tile-03", "seconds": 1},
+    {"do": "restart", "port": "tile-04"},
+    {"do": "set", "name": "brightness", "value": 99},
+    {"do": "set", "name": "period", "value": 30, "port": "tile-06"},
     {"do": "arrange", "cells": [[row, col] for row in range(5) for col in range(3)]},
 ]
 MISTAKES: list[dict[str, Any]] = [
@@ -54,6 +58,10 @@ MISTAKES: list[dict[str, Any]] = [
     {"do": "arrange", "cells": [[0, 1.5]]},
     {"do": "open", "cells": [[0, index] for index in range(-64, 64)] + [[1, index] for index in range(17)]},
     {"do": "freeze", "port": "tile-01", "on": 1},
+    {"do": "set", "name": "id", "value": 1},
+    {"do": "set", "name": "period", "value": 9},
+    {"do": "set", "name": "period", "value": 20, "port": ""},
+    {"do": "blink", "port": "tile-01", "seconds": 61},
     {"do": "open", "cells": [[0, 0]], "deeds": [[1, 2]]},
     {"do": "open", "cells": [[0, 0]], "deeds": [[-1, {"do": "pull", "port": "a"}]]},
     {"do": "open", "cells": [[0, 0]], "deeds": [[1, {"do": "pace", "speed": 1}]]},

@@ -13,6 +13,7 @@ from pathlib import Path
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError
 from tilenca.emulator.greeting import firmware_settings
+from tilenca.page.alone import BEHIND, page_alone
 from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import load_offer
 
@@ -20,7 +21,6 @@ from tilenca.page.offer import load_offer
 EMULATOR = "emulator"
 WORKER = Path("stream/worker.js")
 FILES = ("tilenca_emulator.wasm", "firmware.elf")
-BEHIND = '<meta name="tilenca-source" content="{}">'
 _IMPORT = re.compile(r"""^(?:import|export)\b[^"';]*?from\s*"(\.[^"]+)";""", re.MULTILINE)
 
 
@@ -82,6 +82,7 @@ def lay_out(web: Path, out: Path) -> None:
     for name in needed:
         (out / EMULATOR / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(web / name, out / EMULATOR / name)
+    (out / "alone.html").write_text(page_alone(paths.PAGE), encoding="utf-8")
     (out / EMULATOR / "offer.json").write_text(offer_of(web / "firmware.elf") + "\n", encoding="utf-8")
 
 

@@ -1,6 +1,6 @@
 // Many emulated tiles on one clock.
+import { newArray, setHardware } from "./array_new.js";
 import { forEach, indexBelow, seedOf, whole } from "./checks.js";
-import { HARDWARE, writeHardware } from "./hardware.js";
 import { TilencaError } from "./module.js";
 import { Tile } from "./tile.js";
 
@@ -14,25 +14,8 @@ const USUAL_DELAY_S = 260e-6;
  * @typedef {readonly [number, number, number, number]} Link
  */
 
-/**
- * An ELF or Intel HEX file. Messages call it by its name.
- * @typedef {{ name: string, bytes: Uint8Array }} Image
- */
-
-/**
- * @typedef {object} ArrayOptions
- * @property {Image} image what all tiles run
- * @property {Image} [bootloader] for the boot section, where the tiles then start after every reset
- * @property {number} [tiles] how many; default: 1
- * @property {readonly Link[]} [links] the cables
- * @property {ArrayLike<number>} [ppm] each tile's clock error in parts per million; default: none
- * @property {ArrayLike<number>} [switchOnS] when each is switched on, in seconds; default: 0
- * @property {number} [cableDelayS] what a cable takes, 20e-6 to 260e-6; short ones cost time
- * @property {import("./hardware.js").Hardware} [hardware] how far the boards differ from ideal ones; default: as those
- *   of `tilenca.emulator`
- * @property {boolean} [translated] whether to use the module's blocks if they are this image's; it changes nothing
- *   else
- */
+/** @typedef {import("./array_new.js").Image} Image */
+/** @typedef {import("./array_new.js").ArrayOptions} ArrayOptions */
 
 /**
  * What goes wrong in one direction of a cable.
@@ -58,9 +41,9 @@ export class TileArray {
     const tiles = whole("the number of tiles", options.tiles ?? 1);
     const ppm = forEach("clock errors", options.ppm, Math.max(0, tiles), 0);
     const switchOnS = forEach("switch-on times", options.switchOnS, Math.max(0, tiles), 0);
-    this.#handle = this.#made(options, ppm, switchOnS);
+    this.#handle = newArray(module, options, ppm, switchOnS);
     try {
-      this.#setHardware(options.hardware ?? {}, options.bootloader !== undefined);
+      setHardware(module, this.#handle, options.hardware ?? {}, options.bootloader !== undefined);
       this.#call("set_cable_delay", options.cableDelayS ?? USUAL_DELAY_S);
       this.isTranslated = (options.translated ?? true) && this.#useBlocks();
       for (const link of options.links ?? []) {
@@ -70,45 +53,6 @@ export class TileArray {
       this.free();
       throw error;
     }
-  }
-
-  /**
-   * @param {ArrayOptions} options
-   * @param {Float64Array} ppm
-   * @param {Float64Array} switchOnS
-   */
-  #made({ image, bootloader }, ppm, switchOnS) {
-    const files = bootloader === undefined ? [image] : [image, bootloader];
-    const names = files.map((file) => new TextEncoder().encode(`${file.name}\0`));
-    const namesBytes = names.reduce((sum, name) => sum + name.length + 16, 0);
-    this.module.begin(namesBytes + ppm.byteLength + switchOnS.byteLength + 32);
-    const addresses = [...names, ppm, switchOnS].map((list) => {
-      const address = this.module.take(list.byteLength);
-      this.module.bytes(address).set(new Uint8Array(list.buffer, list.byteOffset, list.byteLength));
-      return address;
-    });
-    const [path, boot] = bootloader === undefined ? [addresses[0], 0] : addresses;
-    for (const file of files) {
-      this.module.putFile(file.name, file.bytes);
-    }
-    try {
-      return this.module.address("array_new", path, boot, ppm.length, ...addresses.slice(-2));
-    } finally {
-      for (const file of files) {
-        this.module.dropFile(file.name);
-      }
-    }
-  }
-
-  /**
-   * @param {import("./hardware.js").Hardware} hardware
-   * @param {boolean} hasBootloader
-   */
-  #setHardware(hardware, hasBootloader) {
-    this.module.begin(HARDWARE.bytes);
-    const address = this.module.take(HARDWARE.bytes);
-    writeHardware(this.module.bytes(address, HARDWARE.bytes), hardware, hasBootloader);
-    this.#call("set_hardware", address);
   }
 
   #useBlocks() {

@@ -158,20 +158,22 @@ def add_scheduler_argument(add: Callable[..., Any]) -> None:
     )
 
 
-def add_port_argument(parser: argparse.ArgumentParser) -> None:
-    """The `--port` option that all fleet commands share."""
+def add_port_argument(parser: argparse.ArgumentParser, otherwise: str = "default: Mega 2560s on USB") -> None:
+    """The `--port` option that all fleet commands share; `otherwise` says in the help what goes without."""
     parser.add_argument(
         "--port",
         action="append",
         default=[],
         metavar="GLOB",
-        help="a port or a quoted pattern, such as '/dev/ttyACM*', repeatable (default: Mega 2560s on USB)",
+        help=f"a port or a quoted pattern, such as '/dev/ttyACM*', repeatable ({otherwise})",
     )
 
 
-def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
+def add_fleet_arguments(
+    parser: argparse.ArgumentParser, otherwise: str = "default: Mega 2560s on USB"
+) -> None:
     """`--port` and `--tiles`, which all fleet commands share."""
-    add_port_argument(parser)
+    add_port_argument(parser, otherwise)
     parser.add_argument(
         "--tiles",
         type=Path,

@@ -22,7 +22,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
         "tilenca emulate --shape 4 --watch --seconds 10",
         "tilenca emulate --model models/mine --fault loss=0.02",
     ),
-    "page": ("tilenca page", "tilenca page --shapes my-shapes.toml --no-open"),
+    "page": ("tilenca page", "tilenca page --port '/dev/ttyACM*'"),
     "devices": ("tilenca devices", "tilenca devices --port '/dev/ttyACM*' --json"),
     "flash": ("tilenca flash --model models/mine", "tilenca flash --only 7 --force"),
     "set": ("tilenca set brightness 40", "tilenca set period 40 --tile 7"),

@@ -10,14 +10,13 @@ from typing import Protocol, TypeAlias
 
 from rich.console import Console
 
-from tilenca.base.errors import NoDeviceError, TilencaError, UsageError
+from tilenca.base.errors import UsageError
 from tilenca.base.signals import held_back
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_fleet_arguments, not_negative
-from tilenca.fleet.boards import Found, find_boards, find_fleet, load_places
+from tilenca.fleet.boards import load_places
 from tilenca.fleet.grid import Grid
-from tilenca.fleet.ports import MAGIC
-from tilenca.fleet.reader import PortReader
+from tilenca.fleet.listen import Listener
 from tilenca.fleet.recording import Choice, Recorder, format_event
 from tilenca.fleet.replay import KEYS, Player
 from tilenca.fleet.state import Event, Fleet
@@ -30,10 +29,6 @@ from tilenca.views.keyboard import Keyboard, is_ours
 Events: TypeAlias = Iterator[tuple[float, list[Event]]]
 
 TICK_S = 0.2
-# How often to look for boards that came back under another name.
-LOOK_AROUND_S = 3.0
-# How long patterns that match nothing may do so: an emulation is up in a second or two.
-PATIENCE_S = 8.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -91,9 +86,10 @@ def run(args: argparse.Namespace) -> int:
                 _show(iter(player), fleet, display, None, args.seconds, start_s)
                 choice.complain(start_s)
             else:
-                source, grid = _listen(args, stack)
+                listener = stack.enter_context(Listener(args.port, args.tiles))
                 record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
-                _show(source, fleet, _display(args, fleet, grid, stack), record, args.seconds)
+                display = _display(args, fleet, listener.grid, stack)
+                _show(_heard(listener), fleet, display, record, args.seconds)
     finally:
         if fleet.tiles:
             warn(summary(fleet.tiles.values()))
@@ -128,55 +124,11 @@ def _show(
         display.show(now_s, events)
 
 
-def _listen(args: argparse.Namespace, stack: ExitStack) -> tuple[Events, Grid]:
-    """Events from the ports, which are found (or not) before anything is shown."""
-    found = _awaited(args)
-    found.tell_others()
-    reader = stack.enter_context(PortReader([board.port.name for board in found.boards]))
-    grid = Grid(load_places(args.tiles))
-    grid.know(found)
-
-    def events() -> Events:
-        look_s = time.monotonic() + LOOK_AROUND_S
-        while True:
-            news = reader.poll(TICK_S)
-            yield time.time(), news
-            if time.monotonic() >= look_s:
-                look_s = time.monotonic() + LOOK_AROUND_S
-                _look_around(args, found, reader, grid)
-
-    return events(), grid
-
-
-def _look_around(args: argparse.Namespace, found: Found, reader: PortReader, grid: Grid) -> None:
-    """Adds what has come since: a board may come back under another name."""
-    if not (found.missing or reader.closed or any(map(MAGIC.search, args.port))):
-        return
-    try:
-        now = find_boards(args.port, args.tiles)
-    except TilencaError:
-        return  # no board is there now, or the file is being edited
-    reader.add([board.port.name for board in now.boards])
-    grid.know(now)
-
-
-def _awaited(args: argparse.Namespace) -> Found:
-    """The boards, for which patterns get a while: tiles that were just started may still be coming."""
-    end_s = time.monotonic() + PATIENCE_S
-    told, before = False, 0
+def _heard(listener: Listener) -> Events:
+    """What comes from the ports, without end."""
     while True:
-        try:
-            found = find_fleet(args.port, args.tiles)
-            if not told or len(found.boards) == before:
-                return found
-            before = len(found.boards)  # they come one after the other: look once more
-        except NoDeviceError:
-            if not any(map(MAGIC.search, args.port)) or time.monotonic() >= end_s:
-                raise
-        if not told:
-            warn(f"nothing matches {' '.join(args.port)} yet; waiting up to {PATIENCE_S:g} s for it")
-            told = True
-        time.sleep(TICK_S)
+        news = listener.poll(TICK_S)
+        yield time.time(), news
 
 
 def _display(

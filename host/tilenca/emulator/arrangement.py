@@ -124,7 +124,11 @@ class Arrangement:
 
     def freeze(self, tile: int, on: bool) -> None:
         """Tells a tile over USB to update no more, or for ever; until then it does as before."""
-        self._array[tile].write_serial(set_command("updates", STOPPED_UPDATES if on else FOR_EVER))
+        self.tell(tile, set_command("updates", STOPPED_UPDATES if on else FOR_EVER))
+
+    def tell(self, tile: int, command: bytes) -> None:
+        """Sends a tile a command over USB."""
+        self._array[tile].write_serial(command)
 
     # --- cables ---
 

@@ -40,6 +40,7 @@ class Cell:
         age_s: since its last sentence.
         trouble: one word for a tile that is away or silent, else "".
         marks: each side's link.
+        port: behind which it is; None while no port is known.
     """
 
     tile: int | None
@@ -50,6 +51,7 @@ class Cell:
     age_s: float | None = None
     trouble: str = ""
     marks: Mapping[str, Mark] = field(default_factory=dict)
+    port: str | None = None
 
 
 def patience_s(view: TileView) -> float:
@@ -149,6 +151,7 @@ def _cell(view: TileView, tile: int | None, now_s: float) -> Cell:
         None if view.heard_s is None else max(now_s - view.heard_s, 0.0),
         trouble(view, now_s),
         marks,
+        view.port,
     )
 
 

@@ -15,9 +15,10 @@ from tilenca.emulator.history import QUANTUM_S
 from tilenca.emulator.types import port_name
 from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
-from tilenca.page.teller import Said, Teller
+from tilenca.page.teller import VOICE_BYTES, Said, Teller
 from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol.commands import blink_command, restart_command, set_command
 from tilenca.protocol.settings import Settings
 from tilenca.protocol.stream import (
     StreamEvent,
@@ -143,6 +144,13 @@ class EmulatedSource:
                 self._array[self._tile(port)].reset()
             case commands.Noise(loss):
                 board.lose(loss)
+            case commands.Blink(port, seconds):
+                board.tell(self._tile(port), blink_command(seconds))
+            case commands.Restart(port):
+                board.tell(self._tile(port), restart_command())
+            case commands.Set(name, value, port):
+                for tile in sorted(board.places) if port is None else [self._tile(port)]:
+                    board.tell(tile, set_command(name, value))
 
     def _do_planned(self, planned: commands.Deed) -> None:
         """What a hand does at its time; what cannot be done is told, and forgotten."""
@@ -233,7 +241,9 @@ class EmulatedSource:
 
     def _keep(self) -> None:
         moment = self._board.save()
-        self._timeline.keep(moment.time_s, _Moment(moment, self._teller.save()), len(moment.snapshot))
+        said = self._teller.save()
+        size = len(moment.snapshot) + VOICE_BYTES * len(said)
+        self._timeline.keep(moment.time_s, _Moment(moment, said), size)
 
     def _seek(self, time_s: float) -> None:
         """Goes to a time that the run has been at; all that hands did until then is done."""

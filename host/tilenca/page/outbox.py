@@ -5,10 +5,12 @@ from collections.abc import Iterable
 from tilenca.protocol.sentences import LinkSentence, parse_sentence, type_of
 from tilenca.protocol.stream import StreamEvent
 
-# Frames and refusals that wait; older ones give way.
+# Of those each one counts; so many wait, and older ones give way.
 MOST_FRAMES = 256
 MOST_REFUSALS = 8
 MOST_DEEDS = 256
+MOST_NOTES = 64
+BOUNDED = {"frame": MOST_FRAMES, "refused": MOST_REFUSALS, "deed": MOST_DEEDS, "note": MOST_NOTES}
 # Batches that may be on their way, unseen.
 MOST_UNSEEN = 3
 
@@ -18,7 +20,7 @@ class Outbox:
 
     def __init__(self) -> None:
         self._waiting: dict[tuple[object, ...], StreamEvent] = {}
-        self._counters: dict[str, int] = {"frame": 0, "refused": 0, "deed": 0}
+        self._counters: dict[str, int] = dict.fromkeys(BOUNDED, 0)
         self._sent = self._seen = 0
 
     def put(self, events: Iterable[StreamEvent]) -> None:
@@ -33,17 +35,17 @@ class Outbox:
 
     def _key(self, event: StreamEvent) -> tuple[object, ...]:
         port = event.get("port")
-        for kind, most in (("frame", MOST_FRAMES), ("refused", MOST_REFUSALS), ("deed", MOST_DEEDS)):
+        for kind, most in BOUNDED.items():
             if kind in event:
                 self._counters[kind] += 1
                 return kind, self._counters[kind] % most
         if "raw" in event:
             return "raw", port, *subject_of(str(event["raw"]))
-        for kind in ("stream", "run", "jump", "pace"):
+        for kind in ("stream", "run", "jump", "pace", "classes"):
             if kind in event:
                 return (kind,)
         return (
-            next(key for key in ("place", "cable", "open", "display") if key in event),
+            next(key for key in ("place", "cable", "open", "display", "health") if key in event),
             port,
             event.get("side"),
         )

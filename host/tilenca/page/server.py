@@ -3,17 +3,20 @@
 import asyncio
 import json
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import uvicorn
 from starlette.applications import Starlette
-from starlette.routing import Mount, WebSocketRoute
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
+from tilenca.page.alone import BEHIND, page_alone
 from tilenca.page.guard import Guard, GuardedApp
 from tilenca.page.outbox import Outbox
 from tilenca.page.session import Session, Source
@@ -95,12 +98,12 @@ class Client:
                 return
 
 
-def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> ASGIApp:
-    """The application: the files of the bundle, and the stream.
+def make_app(bundle: Path, make_source: Callable[[str], Source], guard: Guard) -> ASGIApp:
+    """The application: the files of the bundle, the stream, and the page as one file for a recording.
 
     Args:
         bundle: folder of the static page.
-        make_source: called for each client, in a thread of its own.
+        make_source: called for each client, in a thread of its own, with the model that it wants, or "".
         guard: who may come.
     """
     clients = 0
@@ -119,15 +122,47 @@ def make_app(bundle: Path, make_source: Callable[[], Source], guard: Guard) -> A
             return
         clients += 1
         try:
-            await Client(websocket, make_source).serve()
+            wanted = websocket.query_params.get("model", "")
+            await Client(websocket, lambda: make_source(wanted)).serve()
         finally:
             clients -= 1
             if websocket.client_state is WebSocketState.CONNECTED:
                 with suppress(RuntimeError):
                     await websocket.close(1003)
 
-    routes = [WebSocketRoute("/stream", stream), Mount("/", StaticFiles(directory=bundle, html=True))]
-    return GuardedApp(Starlette(routes=routes), guard)
+    return _app(bundle, guard, [WebSocketRoute("/stream", stream)])
+
+
+def make_replay_app(bundle: Path, recording: str, guard: Guard) -> ASGIApp:
+    """The application that shows a recording: the files of the bundle, and the recording.
+
+    Args:
+        bundle: folder of the static page.
+        recording: of the page; a line of JSON for each event.
+        guard: who may come.
+    """
+    document = (bundle / "index.html").read_text(encoding="utf-8")
+    document = document.replace(BEHIND.format("server"), BEHIND.format("recording"))
+
+    async def first(request: Request) -> Response:
+        return HTMLResponse(document)
+
+    async def file(request: Request) -> Response:
+        if not guard.knows_token(request.query_params.get("token", "")):
+            return PlainTextResponse("refused\n", 403)
+        return PlainTextResponse(recording, media_type="application/jsonl")
+
+    return _app(
+        bundle, guard, [Route("/", first), Route("/index.html", first), Route("/recording.jsonl", file)]
+    )
+
+
+def _app(bundle: Path, guard: Guard, routes: Sequence[BaseRoute]) -> ASGIApp:
+    async def alone(request: Request) -> Response:
+        return PlainTextResponse(page_alone(bundle))
+
+    files = Mount("/", StaticFiles(directory=bundle, html=True))
+    return GuardedApp(Starlette(routes=[*routes, Route("/alone.html", alone), files]), guard)
 
 
 def serve(app: ASGIApp, listener: socket.socket, on_start: Callable[[], None]) -> None:

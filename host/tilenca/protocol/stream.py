@@ -26,6 +26,9 @@ KINDS = (
     "deed",
     "display",
     "frame",
+    "classes",
+    "health",
+    "note",
     "refused",
 )
 
@@ -49,18 +52,49 @@ def jump_event(time_s: float, from_s: float) -> StreamEvent:
     return _event(time_s, jump={"from": round(from_s, 6)})
 
 
-def pace_event(time_s: float, speed: float, paused: bool, share: float, end_s: float) -> StreamEvent:
+def pace_event(time_s: float, speed: float, paused: bool, share: float, end_s: float | None) -> StreamEvent:
     """How time passes: `speed` times real time (0: as fast as it can), of which `share` (0..1) is reached.
 
-    One can go to every time up to `end_s`.
+    One can go to every time up to `end_s`; nowhere where it is None.
     """
-    pace = {"speed": speed, "paused": paused, "share": round(share, 3), "end": round(end_s, 6)}
-    return _event(time_s, pace=pace)
+    end = {} if end_s is None else {"end": round(end_s, 6)}
+    return _event(time_s, pace={"speed": speed, "paused": paused, "share": round(share, 3), **end})
 
 
-def place_event(time_s: float, port: str, place: tuple[int, int] | None) -> StreamEvent:
-    """A tile lies at (row, column) from now on; None: it was taken away."""
-    return _event(time_s, port=port, place=None if place is None else list(place))
+def place_event(
+    time_s: float, port: str, place: tuple[int, int] | None, tile: int | None = None
+) -> StreamEvent:
+    """A tile lies at (row, column) from now on; None: it was taken away.
+
+    `tile` is its id, where the name of its port does not tell it.
+    """
+    number = {} if tile is None else {"tile": tile}
+    return _event(time_s, port=port, place=None if place is None else list(place), **number)
+
+
+def classes_event(time_s: float, looks: Sequence[Mapping[str, object]]) -> StreamEvent:
+    """What the tiles can show, from now on: label, segments and RGB duty of each class."""
+    return _event(time_s, classes=list(looks))
+
+
+def health_event(
+    time_s: float, port: str, trouble: str, links: Mapping[str, tuple[str, float | None]]
+) -> StreamEvent:
+    """How a tile is.
+
+    Args:
+        time_s: of the stream.
+        port: the tile.
+        trouble: one word, or "".
+        links: of each side how its link is, and the share (0..1) of frames that arrive whole.
+    """
+    about = {side: [mark, None if good is None else round(good, 2)] for side, (mark, good) in links.items()}
+    return _event(time_s, port=port, health={"trouble": trouble, "links": about})
+
+
+def note_event(time_s: float, port: str, text: str, bad: bool) -> StreamEvent:
+    """A line of the log: what has changed, and whether a person should look."""
+    return _event(time_s, port=port, note=text, bad=bad)
 
 
 def cable_event(time_s: float, port: str, side: str, whole: bool) -> StreamEvent:

@@ -2,9 +2,10 @@
 
 import json
 from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 from tilenca.protocol import stream_fields as must_be
+from tilenca.protocol.constants import MAX_BLINK_S, SETTING_RANGES
 from tilenca.protocol.stream_fields import MAX_NAME, Check
 
 MAX_TEXT = 16_384  # characters of a command
@@ -14,6 +15,7 @@ MAX_SPEED = 1024.0
 MIN_SPEED = 1e-5
 MAX_SECONDS = 86_400.0
 MAX_SEED = 2**53 - 1  # whole numbers of JavaScript
+SETTINGS = ("period", "updates", "brightness")  # an id is nothing to change in passing
 
 
 def _deed(value: object) -> "Deed":
@@ -25,7 +27,8 @@ def _deed(value: object) -> "Deed":
         raise ValueError(f"must be commands that change something, and {name} does not")
     command = _read(dict(value[1]))
     assert isinstance(command, HANDS)
-    return time_s, command
+    hand: Hand = command
+    return time_s, hand
 
 
 def _deeds(value: object) -> tuple["Deed", ...]:
@@ -164,6 +167,30 @@ class Noise:
 
 
 @dataclass(frozen=True)
+class Blink:
+    """Lets a tile blink for some seconds, so that a person finds it."""
+
+    port: str = _checked(must_be.text)
+    seconds: int = _checked(must_be.whole(0, MAX_BLINK_S), 5)
+
+
+@dataclass(frozen=True)
+class Restart:
+    """Presses a tile's button: it begins again from the seed."""
+
+    port: str = _checked(must_be.text)
+
+
+@dataclass(frozen=True)
+class Set:
+    """Sets a tile's period (ms), updates (0: for ever) or brightness; without a port, that of all tiles."""
+
+    name: str = _checked(must_be.one_of(*SETTINGS))
+    value: int = _checked(must_be.whole(0, 0xFFFF))
+    port: str | None = _checked(must_be.or_none(must_be.text), None)
+
+
+@dataclass(frozen=True)
 class Seen:
     """The page has shown this batch: the next one may come."""
 
@@ -171,33 +198,12 @@ class Seen:
 
 
 # Those that change something.
-HANDS = (Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise)
-Hand: TypeAlias = Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise
+Hand: TypeAlias = Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise | Blink | Restart | Set
+HANDS: tuple[type[Any], ...] = get_args(Hand)
 Deed: TypeAlias = tuple[float, Hand]
 
-StreamCommand: TypeAlias = (
-    Open
-    | Pace
-    | Rest
-    | Step
-    | Seek
-    | Put
-    | Pull
-    | Move
-    | Arrange
-    | Cut
-    | Power
-    | Freeze
-    | Reset
-    | Noise
-    | Seen
-)
-KINDS: dict[str, type[Any]] = {
-    kind.__name__.lower(): kind
-    for kind in (
-        Open, Pace, Rest, Step, Seek, Put, Pull, Move, Arrange, Cut, Power, Freeze, Reset, Noise, Seen,
-    )
-}  # fmt: skip
+StreamCommand: TypeAlias = Open | Pace | Rest | Step | Seek | Hand | Seen
+KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in get_args(StreamCommand)}
 
 
 def _refuse_constant(text: str) -> float:
@@ -247,5 +253,13 @@ def _read(about: dict[str, Any]) -> StreamCommand:
             raise ValueError(f"{name}: {one.name} is missing")
     if about:
         raise ValueError(f"{name}: it has no {str(next(iter(about)))[:MAX_NAME]!r}")
+    if kind is Set and not _is_in_range(given["name"], given["value"]):
+        low, high = SETTING_RANGES[given["name"]]
+        raise ValueError(f"{name}: value must be a whole number in {low}..{high}")
     command: StreamCommand = kind(**given)
     return command
+
+
+def _is_in_range(name: str, value: int) -> bool:
+    low, high = SETTING_RANGES[name]
+    return low <= value <= high

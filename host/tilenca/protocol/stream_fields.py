@@ -7,7 +7,7 @@ from tilenca.base.sides import SIDES
 
 MAX_PLACE = 64  # rows and columns are -MAX_PLACE..MAX_PLACE
 MOST_TILES = 144
-MAX_NAME = 64
+MAX_NAME = 256  # a port may lie deep in the tree
 
 # Raises ValueError where the value is not what it must be.
 Check: TypeAlias = Callable[[object], Any]
@@ -50,11 +50,18 @@ def text(value: object) -> str:
     return value
 
 
-def side(value: object) -> str:
-    """One of N E S W."""
-    if not isinstance(value, str) or len(value) != 1 or value not in SIDES:
-        raise ValueError(f"must be one of {', '.join(SIDES)}")
-    return value
+def one_of(*words: str) -> Check:
+    """One of some words."""
+
+    def check(value: object) -> str:
+        if not isinstance(value, str) or value not in words:
+            raise ValueError(f"must be one of {', '.join(words)}")
+        return value
+
+    return check
+
+
+side = one_of(*SIDES)
 
 
 def list_of(most: int, check: Check, what: str) -> Check:

@@ -131,7 +131,12 @@ export class Board {
 
   /** Tells a tile over USB to update no more, or for ever. @param {number} tile @param {boolean} on */
   freeze(tile, on) {
-    this.array.tile(tile).send(setCommand("updates", on ? STOPPED_UPDATES : FOR_EVER));
+    this.tell(tile, setCommand("updates", on ? STOPPED_UPDATES : FOR_EVER));
+  }
+
+  /** Sends a tile a command over USB. @param {number} tile @param {string} command */
+  tell(tile, command) {
+    this.array.tile(tile).send(command);
   }
 
   /** Cuts or mends the cable at a side. @param {number} tile @param {number} side @param {boolean} isWhole */

@@ -7,7 +7,7 @@ export const MAX_PLACE = 64;
 export const MOST_TILES = 144;
 const MOST_FAULTS = 32;
 const MOST_DEEDS = 200;
-const MAX_NAME = 64;
+const MAX_NAME = 256;
 const MAX_SPEED = 1024;
 const MIN_SPEED = 1e-5;
 const MAX_SECONDS = 86_400;
@@ -86,6 +86,13 @@ const deeds = (value) => {
 /** @type {Check} */
 const untilS = (value) => (value === null ? "" : number(0, MAX_SECONDS)(value));
 const speed = number(MIN_SPEED, MAX_SPEED, true);
+/** The settings that a hand may change, and their ranges. @type {Record<string, [number, number]>} */
+const SETTINGS = { period: [10, 10_000], updates: [0, 0xffff], brightness: [0, 255] };
+/** @type {Check} */
+const settingName = (value) =>
+  typeof value === "string" && Object.hasOwn(SETTINGS, value) ? "" : `must be one of ${Object.keys(SETTINGS).join(", ")}`;
+/** @type {Check} */
+const portOrAll = (value) => (value === null ? "" : text(value));
 
 /** Of each command its fields: how to check one, and what it is where it is left out. @type {Record<string, Record<string, [Check, unknown?]>>} */
 const KINDS = {
@@ -107,11 +114,16 @@ const KINDS = {
   freeze: { port: [text], on: [truth, true] },
   reset: { port: [text] },
   noise: { loss: [number(0, 1)] },
+  blink: { port: [text], seconds: [whole(0, 60), 5] },
+  restart: { port: [text] },
+  set: { name: [settingName], value: [whole(0, 0xffff)], port: [portOrAll, null] },
   seen: { batch: [whole(0, Number.MAX_SAFE_INTEGER)] },
 };
 
 /** Those that change something. */
-const HANDS = ["put", "pull", "move", "arrange", "cut", "power", "freeze", "reset", "noise"];
+const HANDS = [
+  "put", "pull", "move", "arrange", "cut", "power", "freeze", "reset", "noise", "blink", "restart", "set",
+];
 
 /**
  * The command with all its fields.
@@ -138,5 +150,7 @@ export function checked(given) {
   }
   const strange = Object.keys(fields).find((field) => !(field in kind));
   if (strange !== undefined) throw new TilencaError(`${name}: it has no '${strange.slice(0, MAX_NAME)}'`);
+  const wrong = name === "set" ? whole(...SETTINGS[command.name])(command.value) : "";
+  if (wrong) throw new TilencaError(`${name}: value ${wrong}`);
   return command;
 }

@@ -29,8 +29,16 @@ export function settingsBlock(tileId, periodMs, updates) {
 }
 
 /** The command that sets one of a tile's settings. @param {string} name @param {number} value */
-export function setCommand(name, value) {
-  const body = `SET,${name},${value}`;
+export const setCommand = (name, value) => framed(`SET,${name},${value}`);
+
+/** The one that lets its display blink. @param {number} seconds */
+export const blinkCommand = (seconds) => framed(`BLINK,${seconds}`);
+
+/** The one that does as its button. */
+export const restartCommand = () => framed("RESTART");
+
+/** A sentence for a tile. @param {string} body */
+function framed(body) {
   const sum = [...body].reduce((all, one) => all ^ one.charCodeAt(0), 0);
   return `$${body}*${sum.toString(16).toUpperCase().padStart(2, "0")}\r\n`;
 }

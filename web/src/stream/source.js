@@ -5,8 +5,9 @@ import { Board } from "./board.js";
 import { MOST_TILES, checked } from "./commands.js";
 import { sorted } from "./faults.js";
 import { Pace, QUANTUM_S } from "./pace.js";
+import { blinkCommand, restartCommand, setCommand } from "./settings.js";
 import { SIDES } from "./sides.js";
-import { Teller, event, portName, refused } from "./teller.js";
+import { Teller, VOICE_BYTES, event, portName, refused } from "./teller.js";
 import { Timeline } from "./timeline.js";
 
 // Up to this speed there is time to look at single frames on the cables.
@@ -123,6 +124,15 @@ export class EmulatedSource {
         return board.array.tile(this.#tile(command.port)).reset();
       case "noise":
         return board.faults.spoilAll("loss", command.loss);
+      case "blink":
+        return board.tell(this.#tile(command.port), blinkCommand(command.seconds));
+      case "restart":
+        return board.tell(this.#tile(command.port), restartCommand());
+      case "set": {
+        const tiles = command.port === null ? [...board.places.keys()].sort((one, other) => one - other) : [this.#tile(command.port)];
+        for (const tile of tiles) board.tell(tile, setCommand(command.name, command.value));
+        return undefined;
+      }
       default:
         throw new TilencaError(`${command.do}: whoever stands before the source takes it`);
     }
@@ -234,7 +244,8 @@ export class EmulatedSource {
   /** @param {Board} board */
   #keep(board) {
     const moment = board.save();
-    this.#timeline.keep(moment.timeS, { board: moment, said: this.#teller.save() }, moment.snapshot.length);
+    const said = this.#teller.save();
+    this.#timeline.keep(moment.timeS, { board: moment, said }, moment.snapshot.length + VOICE_BYTES * said.length);
   }
 
   /** Goes to a time that the run has been at; all that hands did until then is done. @param {number} wantedS */

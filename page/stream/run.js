@@ -1,0 +1,112 @@
+// The run on the page: what it began with, what hands have changed since, and the address that says so.
+
+/** @import { Command } from "./source.js" */
+/** @import { Start } from "./address.js" */
+/** @import { Tiles } from "./tiles.js" */
+import { known, readAddress, writeAddress } from "./address.js";
+import { MOST_DEEDS, MOST_TEXT } from "./deeds.js";
+import { faultsNow, kindsChangedBy } from "./faults.js";
+
+export const TOO_MUCH = "Too much was done for a link: it is that of the board as it lies now. Save a recording instead.";
+
+// What of an address is no part of the run.
+const KEPT = ["embed", "lesson"];
+
+export class Run {
+  /** @param {Tiles} tiles @param {(command: Command) => void} send to the source */
+  constructor(tiles, send) {
+    this.tiles = tiles;
+    this.send = send;
+    /** What it would begin with now. @type {Start | null} */
+    this.start = null;
+    /** What it began with. @type {Start | null} */
+    this.opened = null;
+    /** The faults that it was given at its start, and the kinds of it that a hand has changed since. @type {string[]} */
+    this.given = [];
+    /** @type {Set<string>} */
+    this.handled = new Set();
+    this.noise = 0;
+  }
+
+  /** Whether it can begin anew: real tiles cannot. */
+  get isOwn() {
+    return this.tiles.can("arrange");
+  }
+
+  /** A hand does something. @param {Command} command */
+  note(command) {
+    for (const kind of kindsChangedBy(command)) this.handled.add(kind);
+    if (command.do === "noise") this.noise = Number(command.loss);
+    if (command.do === "pace" && this.start) this.start.speed = Number(command.speed);
+  }
+
+  /** Begins what the address asks for. */
+  begin() {
+    this.start = this.start ?? readAddress(location.search, this.tiles.drawings);
+    const isOfReal = this.tiles.kind === "watched"; // they are slow enough as they are
+    if (isOfReal && !new URLSearchParams(location.search).has("speed")) this.start.speed = 1;
+    this.open(this.start);
+  }
+
+  /** @param {Start} wanted */
+  open(wanted) {
+    this.start = wanted;
+    this.given = wanted.faults;
+    this.opened = { ...wanted };
+    this.handled.clear();
+    for (const { deed } of wanted.deeds) for (const kind of kindsChangedBy(deed)) this.handled.add(kind);
+    this.noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
+    const { cells, seed, speed, faults, spread, until } = wanted;
+    const planned = wanted.deeds.map(({ time, deed }) => [time, deed]);
+    this.send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until, deeds: planned });
+  }
+
+  /** Begins again with what lies on the board now. */
+  restart() {
+    if (!this.start) return;
+    this.remember();
+    this.open({ ...this.start, until: null, deeds: [] });
+  }
+
+  /** Begins again without the faults, which cannot be; false where there were none. */
+  withoutFaults() {
+    if (!this.start?.faults.length) return false;
+    this.open({ ...this.start, faults: [] });
+    return true;
+  }
+
+  /** The query of the address of the run as it was, with all that hands did, until now; null where that is too much. */
+  link() {
+    const { tiles, opened } = this;
+    if (!opened || !this.isOwn) return location.search;
+    const until = Number(tiles.time.toFixed(6));
+    const deeds = tiles.deeds.filter(({ time }) => time <= until);
+    const run = { ...opened, speed: this.start?.speed ?? opened.speed, model: this.start?.model ?? "", until, deeds };
+    if (deeds.length > MOST_DEEDS || JSON.stringify(run).length > MOST_TEXT) return null;
+    return writeAddress(run, tiles.drawings);
+  }
+
+  /** Notes what lies on the board now, in `start` and in the address; returns the name of the drawing, or "". */
+  remember() {
+    const { tiles, start } = this;
+    const laid = tiles.laid();
+    if (!start || !laid.length || !this.isOwn) return "";
+    start.cells = laid.map((tile) => tile.place);
+    const isUp = tiles.time > start.spread + 0.1;
+    if (isUp) start.faults = faultsNow(tiles, this.given, this.handled, this.noise);
+    const given = new URLSearchParams(location.search);
+    const kept = KEPT.filter((name) => given.has(name)).map((name) => `&${name}=${given.get(name)}`).join("");
+    const address = writeAddress({ ...start, deeds: [] }, tiles.drawings) + kept;
+    if (address !== location.search) history.replaceState(null, "", address + location.hash);
+    return known(start.cells, tiles.drawings)?.name ?? "";
+  }
+
+  /** Notes the tiles' model; returns the one that the address was made with, where it is another. */
+  otherModel() {
+    const modelId = this.tiles.laid().find((tile) => tile.modelId)?.modelId;
+    if (!this.start || !modelId || this.start.model === modelId) return "";
+    const before = this.start.model;
+    this.start.model = modelId;
+    return before;
+  }
+}

@@ -1,0 +1,60 @@
+"""The page as one file: everything is in it, and the recording cannot break out of its place."""
+
+import base64
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tilenca.base import paths
+from tilenca.page.alone import HOLE, AloneError, modules, page_alone, with_recording
+
+DOCUMENT = page_alone(paths.PAGE)
+
+
+def imports_of(document: str) -> dict[str, str]:
+    found = re.search(r'<script type="importmap">(.*?)</script>', document, re.DOTALL)
+    assert found is not None
+    data: dict[str, str] = json.loads(found[1])["imports"]
+    return {name: base64.b64decode(text.partition(",")[2]).decode() for name, text in data.items()}
+
+
+def test_nothing_is_asked_of_anybody() -> None:
+    assert "default-src 'none'" in DOCUMENT
+    assert "connect-src" not in DOCUMENT
+    assert re.findall(r'(?:src|href)="(?!data:|#)[^"]+"', DOCUMENT) == []
+    assert DOCUMENT.count("<style>") == len(list((paths.PAGE / "styles").glob("*.css")))
+    assert DOCUMENT.count(HOLE) == 1
+
+
+def test_every_module_that_is_imported_is_there() -> None:
+    texts = imports_of(DOCUMENT)
+    assert len(texts) == len(modules(paths.PAGE)) > 30
+    for text in texts.values():
+        assert set(re.findall(r'"(tilenca/[^"]+)";', text)) <= texts.keys()
+        assert not re.search(r'^(import|export)\b[^;]*?from "\.', text, re.MULTILINE)
+
+
+@given(st.text())
+def test_a_recording_stays_in_its_place_and_is_what_it_was(text: str) -> None:
+    line = json.dumps({"time": 0, "port": text, "raw": "</script><script>alert(1)</script>"})
+    document = with_recording(DOCUMENT, line)
+    assert HOLE not in document
+    found = re.search(r'id="recording">\n(.*?)</script>', document, re.DOTALL)
+    assert found is not None
+    assert json.loads(found[1]) == json.loads(line)
+
+
+def test_a_page_that_lacks_a_module_or_its_marks_is_refused(tmp_path: Path) -> None:
+    broken = tmp_path / "page"
+    shutil.copytree(paths.PAGE, broken)
+    (broken / "stream" / "led.js").unlink()
+    with pytest.raises(AloneError, match=r"led\.js: No such file"):
+        page_alone(broken)
+    (broken / "index.html").write_text("<p>none</p>")
+    with pytest.raises(AloneError, match="what stands behind it"):
+        page_alone(broken)
