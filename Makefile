@@ -26,7 +26,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
-	imports types budgets sanitize docs format train bench sweep report web page-bundle wheel clean
+	imports types budgets sanitize docs format train bench sweep soak report web page-bundle wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -126,6 +126,11 @@ report: setup-train ## measure every claim again (some five minutes of two cores
 	@sed 's/`report.html`/[results.html](results.html)/' build/report/RESULTS.md > docs/RESULTS.md
 	@cp build/report/report.html docs/results.html
 	@cp build/report/images/results-*.svg docs/images/
+
+TIME ?= 600
+soak: setup-test ## let twenty emulated tiles go through everything that can happen, for TIME=600 seconds of theirs
+	@$(PIO) run -s -e $(ENV)
+	@$(TOOL) bench.ordeal --seconds $(TIME)
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)
