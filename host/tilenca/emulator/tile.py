@@ -172,6 +172,13 @@ class EmulatedTile:
         """What analog input A0 to A15 converts to, 0..1023."""
         self._call("tile_set_analog", channel, value)
 
+    def set_supply(self, volts: float) -> None:
+        """The supply voltage, 1.8 to 5.5 V, as the ADC sees it beside the bandgap's 1.1 V.
+
+        The chip runs on at any; `reset(ResetCause.BROWN_OUT)` is what its brown-out detector does.
+        """
+        self._call("tile_set_supply", volts)
+
     def set_adc_noise(self, deviation: float, seed: int = 0) -> None:
         """Conversions are off by a normal deviate, in units of the result's lowest bit."""
         self._call("tile_set_adc_noise", deviation, (seed * MOST_TILES + self.index) % 2**64)
