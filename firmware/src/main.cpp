@@ -4,6 +4,7 @@
 #include "app/appearance.h"
 #include "app/button.h"
 #include "app/host.h"
+#include "app/line_watch.h"
 #include "app/settings_store.h"
 #include "app/telemetry.h"
 #include "app/tile.h"
@@ -14,6 +15,7 @@
 #include "board/eeprom.h"
 #include "board/links.h"
 #include "board/pins.h"
+#include "board/supply.h"
 #include "board/usart.h"
 #include "model/model.h"
 
@@ -33,6 +35,7 @@ Tile tile(model::kModel, kDefaults, 0);
 SettingsStore<board::Eeprom> store;
 Host host(kDefaults, boot);
 Timing timing;
+LineWatch lines;
 Sentence sentence;
 Button button;
 
@@ -111,20 +114,33 @@ void show(uint32_t now_ms) {
 }
 
 Health health() {
-    Health now = {timing.compute_us(), timing.gap_us(), timing.awake_permille(), board::stack_unused(), {}};
+    Health now = {
+        timing.compute_us(), timing.gap_us(), timing.awake_permille(), board::stack_unused(), {}, {}, {},
+        board::supply_mv()};
     for (uint8_t i = 0; i < kSides; ++i) {
         now.overruns[i] = board::link_overruns(side_at(i));
+        now.framing_errors[i] = board::link_framing_errors(side_at(i));
+        now.low_ms[i] = lines.low_ms(side_at(i));
     }
     return now;
 }
 
-void report(uint32_t now_ms) {
+void look_at_board(uint32_t now_ms) {
+    lines.look(board::low_lines(), now_ms);
+    board::supply_watch();
     board::stack_watch();
     if (board::stack_unused() < kLeastStack) {
         telemetry.failed(Error::Stack);
     }
+}
+
+void report(uint32_t now_ms) {
     while (telemetry.next(now_ms) != Telemetry::Next::Nothing && room_to_speak()) {
-        if (telemetry.write(tile, health(), now_ms, &sentence)) {
+        const Health now = health();
+        if (now.supply_mv != 0 && now.supply_mv < kLeastSupplyMv) {
+            telemetry.failed(Error::Supply, now.supply_mv);
+        }
+        if (telemetry.write(tile, now, now_ms, &sentence)) {
             timing.reported();
         }
         say_sentence();
@@ -158,6 +174,7 @@ void setup() {
     board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
+    board::supply_begin();
     load_settings();
     board::watchdog_begin();
     write_hello(tile, boot, &sentence);
@@ -173,6 +190,7 @@ void loop() {
     write_sides();
     obey(now_ms);
     show(now_ms);
+    look_at_board(now_ms);
     report(now_ms);
     if (!tile.busy()) {
         sleep();

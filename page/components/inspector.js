@@ -149,7 +149,7 @@ export class Inspector {
 
   /** @param {Tile} tile */
   showFacts(tile) {
-    const { time } = tile;
+    const { time, board } = tile;
     const facts = [
       ["Updates", String(tile.updates)],
       ["Period", tile.periodMs ? `${tile.periodMs} ms` : ""],
@@ -157,6 +157,7 @@ export class Inspector {
       ["Computes", time ? `${(time.computeUs / 1000).toFixed(1)} ms an update` : ""],
       ["Awake", time ? `${(time.awakePermille / 10).toFixed(0)} % of the time` : ""],
       ["Stack", time ? `${time.stackUnused} bytes never used` : ""],
+      ["Supply", board?.supplyMv ? `${(board.supplyMv / 1000).toFixed(1)} V` : ""],
       ["Model", tile.modelId],
       ["Error", tile.error],
     ].filter(([, value]) => value !== "");

@@ -1,7 +1,7 @@
 // What the page knows of the tiles: the stream's events, added up.
 
 /** @import { Drawing, Look, Place, StreamEvent } from "./source.js" */
-/** @import { LinkSentence, TimeSentence } from "./sentences.js" */
+/** @import { BoardSentence, LinkSentence, TimeSentence } from "./sentences.js" */
 import { parseFrame } from "./frames.js";
 import { parseSentence } from "./sentences.js";
 import { History } from "./history.js";
@@ -13,7 +13,7 @@ import { OFFSETS, SIDES, STREAM_VERSION } from "./source.js";
  *   segments: number, rgb: number[], leds: string,
  *   label: string, margin: number | null, links: string, state: number[], updates: number, uptimeMs: number,
  *   modelId: string, channels: number, classes: number, periodMs: number,
- *   link: Record<string, LinkSentence>, time: TimeSentence | null, error: string, countSide: number,
+ *   link: Record<string, LinkSentence>, time: TimeSentence | null, board: BoardSentence | null, error: string, countSide: number,
  * }} Tile
  *
  * @typedef {Tile & {place: Place}} LaidTile
@@ -27,7 +27,7 @@ function newTile(port) {
     port, number: Number(/(\d+)$/.exec(port)?.[1] ?? 0), place: null, powered: false, frozen: false,
     segments: 0, rgb: [0, 0, 0], leds: "----",
     label: "", margin: null, links: "----", state: [], updates: 0, uptimeMs: 0,
-    modelId: "", channels: 0, classes: 0, periodMs: 0, link: {}, time: null, error: "", countSide: -1,
+    modelId: "", channels: 0, classes: 0, periodMs: 0, link: {}, time: null, board: null, error: "", countSide: -1,
   };
 }
 
@@ -211,6 +211,9 @@ export class Tiles {
         break;
       case "TIME":
         tile.time = sentence;
+        break;
+      case "BOARD":
+        tile.board = sentence;
         break;
       case "ERROR":
         tile.error = `${sentence.code}: ${sentence.text}`;

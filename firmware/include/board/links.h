@@ -31,5 +31,11 @@ void link_write(Side side, const uint8_t* bytes, uint8_t size);
 // to noise. Stops at 65,535.
 uint16_t link_overruns(Side side);
 
+// How many bytes came without a stop bit. Stops at 65,535, but wraps on the south side.
+uint16_t link_framing_errors(Side side);
+
+// The sides whose receiving line is low now: one bit each, in the order N E S W.
+uint8_t low_lines();
+
 } // namespace board
 } // namespace tilenca

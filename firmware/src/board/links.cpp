@@ -1,5 +1,7 @@
 #include "board/links.h"
 
+#include <avr/io.h>
+
 #include "board/gpio.h"
 #include "board/ring.h"
 #include "board/south_uart.h"
@@ -55,6 +57,21 @@ void link_write(Side side, const uint8_t* bytes, uint8_t size) {
     } else {
         usart_write(usart_of(side), bytes, size);
     }
+}
+
+uint16_t link_framing_errors(Side side) {
+    return side == Side::South ? south_framing_errors() : usart_framing_errors(usart_of(side));
+}
+
+uint8_t low_lines() {
+    static_assert(kSideRx[0].port == 'H' && kSideRx[1].port == 'D' && kSideRx[3].port == 'J',
+                  "PINH, PIND, PINJ");
+    uint8_t low = 0;
+    low |= PINH & mask_of(kSideRx[0]) ? 0 : 1 << 0;
+    low |= PIND & mask_of(kSideRx[1]) ? 0 : 1 << 1;
+    low |= PINK & mask_of(kSouthRx) ? 0 : 1 << 2;
+    low |= PINJ & mask_of(kSideRx[3]) ? 0 : 1 << 3;
+    return low;
 }
 
 uint16_t link_overruns(Side side) {

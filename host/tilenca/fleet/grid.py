@@ -40,6 +40,7 @@ class Cell:
         age_s: since its last sentence.
         trouble: one word for a tile that is away or silent, else "".
         marks: each side's link.
+        port: the tile's; "" where it has none.
     """
 
     tile: int | None
@@ -50,6 +51,12 @@ class Cell:
     age_s: float | None = None
     trouble: str = ""
     marks: Mapping[str, Mark] = field(default_factory=dict)
+    port: str = ""
+
+    @property
+    def unheard(self) -> list[str]:
+        """The sides at which a tile lies that speaks, and is not heard."""
+        return [side for side, mark in self.marks.items() if mark is Mark.DEAD]
 
 
 def patience_s(view: TileView) -> float:
@@ -149,6 +156,7 @@ def _cell(view: TileView, tile: int | None, now_s: float) -> Cell:
         None if view.heard_s is None else max(now_s - view.heard_s, 0.0),
         trouble(view, now_s),
         marks,
+        view.port,
     )
 
 

@@ -19,6 +19,7 @@ SILENT_PERIODS = 6
 # Telemetry (section 3).
 HOST_BAUD = 115200
 MAX_SENTENCE = 200
+LEAST_SUPPLY_MV = 4500
 # Commands (section 6).
 MAX_COMMAND = 64
 MAX_BLINK_S = 60

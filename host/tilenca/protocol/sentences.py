@@ -6,6 +6,7 @@ No port and no clock. `protocol.commands` has the host's sentences, `protocol.fr
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from tilenca.base.sides import SIDES
 from tilenca.protocol import patterns
 from tilenca.protocol.checksums import checksum
 from tilenca.protocol.constants import PROTOCOL_VERSION
@@ -104,6 +105,23 @@ class TimeSentence:
 
 
 @dataclass(frozen=True)
+class BoardSentence:
+    """What a tile measures on its board. Lists are in the order of the sides, N E S W.
+
+    Attributes:
+        supply_mv: the supply in mV, right to 9 %; None before it is known.
+        framing_errors: bytes without a stop bit, of each side, since boot.
+        low_ms: how long each side's receiving line stayed low since boot, in stretches of 50 ms and more.
+    """
+
+    tile: int
+    uptime_ms: int
+    supply_mv: int | None
+    framing_errors: tuple[int, ...]
+    low_ms: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class ErrorSentence:
     """An error of a tile: a code word, and a text for people."""
 
@@ -152,6 +170,7 @@ Sentence: TypeAlias = (
     | TileSentence
     | LinkSentence
     | TimeSentence
+    | BoardSentence
     | ErrorSentence
     | AckSentence
     | NakSentence
@@ -186,6 +205,8 @@ def format_sentence(sentence: Sentence) -> bytes:
             fields = ("LINK", *vars(sentence).values())
         case TimeSentence():
             fields = ("TIME", *vars(sentence).values())
+        case BoardSentence(tile, uptime_ms, supply_mv, framing_errors, low_ms):
+            fields = ("BOARD", tile, uptime_ms, supply_mv, *framing_errors, *low_ms)
         case ErrorSentence(tile, uptime_ms, code, text):
             fields = ("ERROR", tile, uptime_ms, code, text)
         case AckSentence(tile, command, values):
@@ -253,6 +274,16 @@ def _time(text: str) -> Sentence | None:
     return TimeSentence(*map(int, found.groups())) if (found := patterns.TIME.fullmatch(text)) else None
 
 
+def _board(text: str) -> Sentence | None:
+    if (found := patterns.BOARD.fullmatch(text)) is None:
+        return None
+    tile, uptime_ms, supply, *sides = found.groups()
+    counts = tuple(map(int, sides))
+    return BoardSentence(
+        int(tile), int(uptime_ms), int(supply) if supply else None, counts[: len(SIDES)], counts[len(SIDES) :]
+    )
+
+
 def _error(text: str) -> Sentence | None:
     found = patterns.ERROR.fullmatch(text)
     return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
@@ -274,6 +305,7 @@ _PARSERS = {
     "TILE": _tile,
     "LINK": _link,
     "TIME": _time,
+    "BOARD": _board,
     "ERROR": _error,
     "ACK": _ack,
     "NAK": _nak,
@@ -285,6 +317,7 @@ TYPES = {
     TileSentence: "TILE",
     LinkSentence: "LINK",
     TimeSentence: "TIME",
+    BoardSentence: "BOARD",
     ErrorSentence: "ERROR",
     AckSentence: "ACK",
     NakSentence: "NAK",
