@@ -25,7 +25,7 @@ namespace {
 
 constexpr uint32_t kHostBaud = 115200;
 constexpr uint16_t kLeastStack = 64; // fewer unused bytes are an error
-constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255};
+constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255, 0};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
 
 Telemetry telemetry;
@@ -98,18 +98,17 @@ void show(uint32_t now_ms) {
     static uint8_t brightness = 0;
     static uint8_t leds = 0;
     const Appearance now = appearance_of(tile, host.blinking(now_ms), now_ms);
-    if (now.shown != shown || tile.settings().brightness != brightness) {
+    const bool brightness_changed = tile.settings().brightness != brightness;
+    if (now.shown != shown || brightness_changed) {
         shown = now.shown;
         brightness = tile.settings().brightness;
         const Look look = look_of(tile, shown);
         board::show_segments(look.segments, brightness);
         board::show_colour(look.red, look.green, look.blue);
     }
-    if (now.leds != leds) {
+    if (now.leds != leds || brightness_changed) {
         leds = now.leds;
-        for (uint8_t i = 0; i < kSides; ++i) {
-            board::show_led(i, leds >> i & 1);
-        }
+        board::show_leds(leds, brightness);
     }
 }
 

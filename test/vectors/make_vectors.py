@@ -133,9 +133,9 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
 
     paper = (7, 2000, 30, 128)
     return [
-        ("the paper's", block(*paper), "7 2000 30 128"),
-        ("no id, shortest period, for ever, dark", block(0, 10, 0, 0), "0 10 0 0"),
-        ("greatest values", block(255, 10000, 65535, 255), "255 10000 65535 255"),
+        ("the paper's", block(*paper), "7 2000 30 128 1"),
+        ("no id, shortest period, for ever, dark", block(0, 10, 0, 0), "0 10 0 0 1"),
+        ("greatest values", block(255, 10000, 65535, 255), "255 10000 65535 255 1"),
         ("erased", b"\xff" * 12, "ignored"),
         ("zeros", b"\0" * 12, "ignored"),
         ("period too short", block(7, 9, 30, 128), "ignored"),
@@ -143,7 +143,8 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
         ("wrong magic", block(*paper, magic=b"NT\2"), "ignored"),
         ("version 1", block(*paper, magic=b"TN\1"), "ignored"),
         ("version 1's shorter block", block(*paper, magic=b"TN\1")[:10] + b"\xff\xff", "ignored"),
-        ("reserved byte used", block(*paper, rest=1), "ignored"),
+        ("link LEDs off", block(*paper, rest=1), "7 2000 30 128 0"),
+        ("link LEDs neither on nor off", block(*paper, rest=2), "ignored"),
         ("bit flipped in the crc", block(*paper, bad_crc=1), "ignored"),
         ("bit flipped in the updates", block(*paper)[:6] + b"\x1f" + block(*paper)[7:], "ignored"),
     ]

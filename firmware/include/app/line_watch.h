@@ -1,5 +1,5 @@
-// Notices receiving lines that stay low. An idle line is high, and no byte is low for longer than nine bits; so a
-// line that is low at every look for long has a short, or a neighbour without power.
+// Notices receiving lines that stay low. An idle line is high, and no byte is low for longer than nine bits;
+// so a line that is low at every look for long has a short, or a neighbour without power.
 #pragma once
 
 #include <stdint.h>

@@ -85,6 +85,8 @@ bool Host::change(Settings* settings) const {
         settings->updates = number;
     } else if (equal(name, "brightness") && number_of(text, 0xFF, &number)) {
         settings->brightness = static_cast<uint8_t>(number);
+    } else if (equal(name, "leds") && number_of(text, 1, &number)) {
+        settings->leds_off = number == 0;
     } else {
         return false;
     }

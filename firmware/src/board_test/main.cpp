@@ -91,13 +91,15 @@ void say_button() {
 
 void show_sides() {
     uint8_t good = 0;
+    uint8_t leds = 0;
     bool failed = false;
     for (uint8_t i = 0; i < kSides; ++i) {
         const Verdict verdict = checks[i].verdict();
-        board::show_led(i, is_good(verdict));
+        leds |= is_good(verdict) << i;
         good += is_good(verdict);
         failed |= !is_good(verdict) && verdict != Verdict::Waiting;
     }
+    board::show_leds(leds);
     board::show_segments(kDigits[good]);
     board::show_colour(failed ? kDuty : 0, good == kSides ? kDuty : 0, 0);
 }

@@ -39,7 +39,7 @@ class EmulatedTile:
 
     @property
     def leds(self) -> tuple[bool, bool, bool, bool]:
-        """The four debug LEDs, in the order N E S W."""
+        """The four debug LEDs as eyes see them: those lit within the last 20 ms, in the order N E S W."""
         mask = self._call("tile_leds")
         return bool(mask & 1), bool(mask & 2), bool(mask & 4), bool(mask & 8)
 

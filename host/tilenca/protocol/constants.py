@@ -35,5 +35,6 @@ SETTING_RANGES = {
     "period": (MIN_PERIOD_MS, MAX_PERIOD_MS),
     "updates": (0, 0xFFFF),
     "brightness": (0, MAX_BRIGHTNESS),
+    "leds": (0, 1),
 }
 PRESETS = ("paper", "default")
