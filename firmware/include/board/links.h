@@ -18,6 +18,14 @@ constexpr uint16_t kReadEveryUs = 5000;
 
 void links_begin();
 
+// East and west have a USART at both ends. North is connected to the software UART of the tile above.
+constexpr uint32_t baud_of(Side side) {
+    return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
+}
+
+// Lets a side that has a USART begin anew at another rate.
+void link_begin(Side side, uint32_t baud);
+
 // The next byte from this side, if any.
 bool link_read(Side side, uint8_t* byte);
 

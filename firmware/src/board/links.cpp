@@ -21,11 +21,6 @@ constexpr uint8_t kByteBits = 10; // start, eight data, stop
 static_assert(us_of_bits(kByteBits*(QUARTER_BYTES - 1), kRowBaud) >= kReadEveryUs, "a USART's queue");
 static_assert(us_of_bits(sizeof(Page) - 1, kLinkBaud) >= kReadEveryUs, "the south link's ring of edges");
 
-// East and west have a USART at both ends. North is connected to the software UART of the tile above.
-constexpr uint32_t baud_of(Side side) {
-    return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
-}
-
 uint8_t usart_of(Side side) {
     return kSideUsart[index_of(side)];
 }
@@ -38,9 +33,13 @@ void links_begin() {
             south_begin();
         } else {
             pull_up(kSideRx[i]);
-            usart_begin(kSideUsart[i], baud_of(side_at(i)));
+            link_begin(side_at(i), baud_of(side_at(i)));
         }
     }
+}
+
+void link_begin(Side side, uint32_t baud) {
+    usart_begin(usart_of(side), baud);
 }
 
 bool link_read(Side side, uint8_t* byte) {

@@ -15,6 +15,8 @@ constexpr avr::PinId on_chip(board::Pin pin) {
 
 constexpr unsigned kSouth = 2;
 constexpr uint64_t kEyeCycles = 320'000; // 20 ms: what is lit more often than that seems to be lit
+// What a link LED and its resistor leave of a pull-up, on the ADC's channel of its pin (ADC8 is PK0): 1.8 V.
+constexpr unsigned kFirstLedChannel = 8, kLedPulledUp = 370;
 constexpr double kAheadTicks = 64; // of the last instruction of a turn, at most
 
 // A USART's pins are facts of the chip, so any instance of it may be asked: RX, then TX.
@@ -52,6 +54,7 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
     }
     for (const board::Pin& led : board::kDebugLeds) {
         chip_.gpio().remember(on_chip(led));
+        chip_.adc().set_input(kFirstLedChannel + led.bit, kLedPulledUp);
     }
 }
 
