@@ -13,6 +13,7 @@
 #include "board/chip.h"
 #include "board/display.h"
 #include "board/eeprom.h"
+#include "board/fuses.h"
 #include "board/links.h"
 #include "board/pins.h"
 #include "board/supply.h"
@@ -163,7 +164,8 @@ void load_settings() {
 } // namespace
 
 void setup() {
-    boot = {board::reset_cause(), board::firmware_id()};
+    const board::Fuses fuses = board::fuses();
+    boot = {board::reset_cause(), board::firmware_id(), {fuses.low, fuses.high, fuses.extended, fuses.lock}};
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
     }

@@ -11,12 +11,13 @@
  *   neighbour: number | null, neighbourSide: string}} LinkSentence
  * @typedef {{name: "TIME", tile: number, uptimeMs: number, computeUs: number, awakePermille: number,
  *   gapUs: number, stackUnused: number, dropped: number}} TimeSentence
+ * @typedef {{name: "CHIP", tile: number, fuses: string[]}} ChipSentence
  * @typedef {{name: "BOARD", tile: number, uptimeMs: number, supplyMv: number | null, framingErrors: number[],
  *   lowMs: number[]}} BoardSentence
  * @typedef {{name: "ERROR", tile: number, uptimeMs: number, code: string, text: string}} ErrorSentence
  * @typedef {{name: "ACK", tile: number, fields: string[]}} Ack
  * @typedef {{name: "NAK", tile: number, reason: string}} Nak
- * @typedef {Hello | TileSentence | LinkSentence | TimeSentence | BoardSentence | ErrorSentence | Ack | Nak} Sentence
+ * @typedef {Hello | TileSentence | LinkSentence | TimeSentence | ChipSentence | BoardSentence | ErrorSentence | Ack | Nak} Sentence
  */
 
 export const PROTOCOL_VERSION = 3;
@@ -71,6 +72,7 @@ const PARSERS = {
           awakePermille: Number(f[3]), gapUs: Number(f[4]), stackUnused: Number(f[5]), dropped: Number(f[6]),
         }
       : null,
+  CHIP: (f) => (f.length === 5 ? { name: "CHIP", tile: Number(f[0]), fuses: f.slice(1) } : null),
   BOARD: (f) =>
     f.length === 11
       ? {

@@ -7,8 +7,10 @@ import pytest
 from support.line_faults import AHEAD_S, CLOCK_HZ
 from tilenca.base.sides import SIDES
 from tilenca.emulator import Array, EmulatedTile
+from tilenca.protocol.commands import chip_command
 from tilenca.protocol.constants import LEAST_SUPPLY_MV
-from tilenca.protocol.sentences import BoardSentence, ErrorSentence, Sentence, parse_sentence
+from tilenca.protocol.sentences import BoardSentence, ChipSentence, ErrorSentence, Sentence, parse_sentence
+from tilenca.protocol.settings import settings_block
 
 
 def said(tile: EmulatedTile) -> list[Sentence | None]:
@@ -51,3 +53,14 @@ def test_the_supply_is_told_and_a_low_one_is_an_error(firmware: Path, volts: flo
     assert [one.supply_mv for one in boards] == pytest.approx([1000 * volts] * 2, rel=0.005)
     errors = [one for one in heard if isinstance(one, ErrorSentence)]
     assert [one.code for one in errors] == ["SUPPLY"] * (1000 * volts < LEAST_SUPPLY_MV)
+
+
+def test_the_fuses_are_told_on_request(firmware: Path) -> None:
+    with Array(firmware) as array:
+        tile = array[0]
+        tile.write_eeprom(0, settings_block(7, 100, 0))
+        tile.set_fuses(low=0xFF, high=0xD9, extended=0xFC, lock=0xCF)
+        array.run(0.3)
+        tile.write_serial(chip_command())
+        array.run(0.1)
+        assert ChipSentence(7, 0xFF, 0xD9, 0xFC, 0xCF) in said(tile)

@@ -12,6 +12,7 @@ from tilenca.protocol.constants import MAX_SENTENCE, PROTOCOL_VERSION
 from tilenca.protocol.sentences import (
     AckSentence,
     BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -41,6 +42,7 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
         st.none() | u8, st.none() | sides,
     ),
     st.builds(TimeSentence, u8, u32, u32, u16, u32, u16, u32),
+    st.builds(ChipSentence, u8, u8, u8, u8, u8),
     st.builds(BoardSentence, u8, u32, st.none() | u16, st.tuples(*[u16] * 4), st.tuples(*[u32] * 4)),
     st.builds(ErrorSentence, u8, u32, words, texts),
     st.builds(AckSentence, u8, words, st.lists(texts.filter(len), max_size=2).map(tuple)),
@@ -67,6 +69,7 @@ SENTENCES: dict[str, Sentence] = {
     "link that never heard a frame": LinkSentence(7, 5, "W", 0, 0, 0, 0, 0, None, 0, None, None),
     "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210, 12, 200, "W"),
     "time": TimeSentence(7, 1000, 14200, 163, 2048, 5000, 3),
+    "chip": ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF),
     "board whose supply is not known": BoardSentence(7, 500, None, (0,) * 4, (0,) * 4),
     "board with a line that is low": BoardSentence(
         7, 60500, 4380, (1, 0, 65535, 12), (0, 0, 60000, 4294967295)

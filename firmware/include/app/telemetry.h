@@ -12,6 +12,7 @@ namespace tilenca {
 struct Boot {
     uint8_t reset_cause; // MCUSR, or what the marks in SRAM say
     uint32_t firmware_id;
+    uint8_t fuses[4]; // low, high, extended, and the lock byte
 };
 
 // The health of a tile, as the board and the main loop measure it.
@@ -37,6 +38,7 @@ void write_tile(const Tile& tile, uint32_t now_ms, Sentence* sentence);
 void write_link(const Tile& tile, Side side, uint16_t overruns, uint32_t now_ms, Sentence* sentence);
 void write_time(const Tile& tile, const Health& health, uint32_t dropped, uint32_t now_ms,
                 Sentence* sentence);
+void write_chip(const Tile& tile, const Boot& boot, Sentence* sentence);
 void write_board(const Tile& tile, const Health& health, uint32_t now_ms, Sentence* sentence);
 
 // `detail` of Error::Watchdog is the byte address in flash where the program hung, 0 if not known; of

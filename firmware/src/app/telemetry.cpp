@@ -23,6 +23,15 @@ void write_hello(const Tile& tile, const Boot& boot, Sentence* sentence) {
     sentence->end();
 }
 
+void write_chip(const Tile& tile, const Boot& boot, Sentence* sentence) {
+    sentence->begin("CHIP");
+    sentence->number(tile.settings().tile_id);
+    for (uint8_t byte : boot.fuses) {
+        sentence->hex(byte, 2);
+    }
+    sentence->end();
+}
+
 void write_tile(const Tile& tile, uint32_t now_ms, Sentence* sentence) {
     sentence->begin("TILE");
     sentence->number(tile.settings().tile_id);

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from tilenca.fleet.reader import PortReader
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.board_test import BOARD_TEST
-from tilenca.protocol.commands import ask_command
-from tilenca.protocol.sentences import BoardSentence, HelloSentence, OtherVersionSentence
+from tilenca.protocol.commands import ask_command, chip_command
+from tilenca.protocol.sentences import BoardSentence, ChipSentence, HelloSentence, OtherVersionSentence
 
 # After a reset a tile greets by itself as soon as its bootloader stops waiting. Until then the bootloader
 # takes any byte for the beginning of a command and waits for more. So a question goes only to a tile that has
@@ -28,11 +28,12 @@ SILENT = "says nothing"
 
 @dataclass(frozen=True)
 class Answer:
-    """A tile's greeting, or the `problem` that prevented one; `board` is what it measures, if awaited."""
+    """A tile's greeting, or the `problem` that prevented one; `board` and `chip` if awaited."""
 
     hello: HelloSentence | None = None
     problem: str = ""
     board: BoardSentence | None = None
+    chip: ChipSentence | None = None
 
     @property
     def firmware_id(self) -> int | None:
@@ -46,6 +47,7 @@ class _Asked:
     def __init__(self, patience_s: float, board_s: float) -> None:
         self.answer: Answer | None = None
         self.wait_s = 0.0  # until then, more may come after the answer
+        self.asks_chip = False  # it has greeted, and its chip is still to be asked for
         self._board_s = board_s
         self.ask_s = self.end_s = float("inf")
         self._fresh_s = 0.0  # earlier bytes may be from before a reset
@@ -72,8 +74,11 @@ class _Asked:
             if self.answer is None:
                 self.answer = Answer(event.sentence)
                 self.wait_s = now_s + self._board_s
+                self.asks_chip = self._board_s > 0
         elif isinstance(event.sentence, BoardSentence) and self.answer and self.answer.hello:
             self.answer, self.wait_s = replace(self.answer, board=event.sentence), now_s
+        elif isinstance(event.sentence, ChipSentence) and self.answer:
+            self.answer = replace(self.answer, chip=event.sentence)
         elif isinstance(event.sentence, OtherVersionSentence):
             self.answer = Answer(problem=f"speaks protocol {event.sentence.version}")
         elif now_s < self._fresh_s:
@@ -100,7 +105,7 @@ def ask_all(
         report: called with each answer as it comes.
         patience_s: how long a tile may say nothing.
         clock: seconds that only grow.
-        board_s: how long to wait, after its greeting, for what a tile measures on its board.
+        board_s: how long to wait, after its greeting, for what a tile measures on its board, and its fuses.
 
     Returns:
         An answer for each port, in the order of `names`.
@@ -133,6 +138,9 @@ def ask(
             tile = asked[name]
             if tile.answer is None and now_s >= tile.end_s:
                 tile.answer = Answer(problem=SILENT)
+            if tile.asks_chip:
+                tile.asks_chip = False
+                reader.write(name, chip_command())
             if tile.answer is not None and now_s < tile.wait_s:
                 continue
             if tile.answer is not None:

@@ -6,6 +6,7 @@ from tilenca.base.sides import SIDES
 from tilenca.protocol.sentences import (
     AckSentence,
     BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -64,6 +65,8 @@ def words(sentence: Sentence) -> str:
         case TimeSentence(_, _, compute_us, awake_permille, gap_us, stack_unused, dropped):
             times = f"computes {compute_us} us awake {awake_permille / 10:.1f} % longest turn {gap_us} us"
             return f"{times} stack {stack_unused} bytes unused {dropped} sentences dropped"
+        case ChipSentence(_, low, high, extended, lock):
+            return f"fuses low {low:02X} high {high:02X} extended {extended:02X} lock {lock:02X}"
         case BoardSentence():
             return _board_words(sentence)
         case ErrorSentence(_, _, code, text):

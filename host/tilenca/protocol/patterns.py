@@ -23,6 +23,7 @@ _LABEL, _LINKS, _OPTIONAL_BYTE = r"([!-+\--~]?)", r"([N-][E-][S-][W-])", r"(\d{0
 TILE = _fields("TILE", *[_NUMBER] * 3, _LABEL, *[_OPTIONAL_BYTE] * 2, _LINKS, _STATE)
 LINK = _fields("LINK", *[_NUMBER] * 2, _SIDE, *[_NUMBER] * 5, _OPTIONAL, _NUMBER, _OPTIONAL, _SIDE + "?")
 TIME = _fields("TIME", *[_NUMBER] * 7)
+CHIP = _fields("CHIP", _NUMBER, *[_HEX2] * 4)
 BOARD = _fields("BOARD", *[_NUMBER] * 2, _OPTIONAL, *[_NUMBER] * 8)
 ERROR = _fields("ERROR", *[_NUMBER] * 2, _WORD, _TEXT)
 ACK = re.compile(rf"ACK,{_NUMBER},{_WORD}((?:,[ -+\--~]*)*)")

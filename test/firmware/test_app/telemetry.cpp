@@ -52,7 +52,7 @@ struct Fixture {
 TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
     const Tile tile(model, {7, 2000, 30, 128}, 0);
     Sentence sentence;
-    write_hello(tile, {0x0A, 0x00C0FFEE}, &sentence);
+    write_hello(tile, {0x0A, 0x00C0FFEE, {}}, &sentence);
     CHECK(text_of(sentence) == line_of("hello of tile 7"));
 }
 
@@ -112,6 +112,12 @@ TEST_CASE_FIXTURE(Fixture, "a tile tells its times, its stack and what it droppe
     Sentence sentence;
     write_time(tile, {14200, 2048, 163, 5000, {}, {}, {}, 0}, 3, 1000, &sentence);
     CHECK(text_of(sentence) == line_of("time"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile tells its fuses") {
+    Sentence sentence;
+    write_chip(Tile(model, {7, 100, 0, 255}, 0), {0, 0, {0xFF, 0xD8, 0xFD, 0xCF}}, &sentence);
+    CHECK(text_of(sentence) == line_of("chip"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile tells its supply, framing errors and lines that stay low") {
