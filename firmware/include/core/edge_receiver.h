@@ -108,8 +108,10 @@ inline int16_t EdgeReceiver<kBitCounts>::receive(Source source, uint16_t now) {
     if (!complete) {
         complete = sample(state, now);
     }
-    framing_errors_ += state.framing_errors;
-    state.framing_errors = 0;
+    if (state.framing_errors != 0) {
+        framing_errors_ += state.framing_errors;
+        state.framing_errors = 0;
+    }
     state_ = state;
     return complete ? state.byte : kNoByte;
 }
