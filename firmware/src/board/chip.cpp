@@ -15,9 +15,10 @@ uint32_t now = 0; // the last result of now_ms()
 
 } // namespace
 
-// Milliseconds modulo 256, since a longer count would take the interrupt in avr/clock.S longer.
+// What the interrupts in avr/clock.S work on.
 extern "C" {
-volatile uint8_t tilenca_ticks = 0;
+volatile uint8_t tilenca_ticks = 0; // milliseconds modulo 256, since a longer count would take longer
+volatile uint8_t tilenca_leds = 0;  // the link LEDs to light: bits as in show_leds()
 }
 
 void clock_begin() {

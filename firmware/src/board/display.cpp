@@ -9,10 +9,7 @@
 namespace tilenca {
 namespace board {
 
-// The LEDs to light, for avr/clock.S: bits as in show_leds().
-extern "C" {
-volatile uint8_t tilenca_leds = 0;
-}
+extern "C" volatile uint8_t tilenca_leds; // chip.cpp
 static_assert(kDebugLeds[0].port == 'K' && kDebugLeds[0].bit == 0 && kDebugLeds[1].bit == 1 &&
                   kDebugLeds[2].bit == 2 && kDebugLeds[3].bit == 3,
               "avr/clock.S");
