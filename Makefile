@@ -108,6 +108,8 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(PIO) run -s -e $(ENV)
 	@$(TOOL) bench.overview $(ELF)
 	@$(TOOL) bench.links $(ELF) --write docs/BENCHMARKS.md
+	@$(TOOL) bench.currents --write docs/HARDWARE.md
+	@$(TOOL) bench.margins --write docs/HARDWARE.md
 	@$(TOOL) bench.training
 	@$(TOOL) bench.kernel --write docs/BENCHMARKS.md
 	@$(TOOL) bench.fleet

@@ -4,6 +4,7 @@
 #include "app/appearance.h"
 #include "app/button.h"
 #include "app/host.h"
+#include "app/line_watch.h"
 #include "app/settings_store.h"
 #include "app/telemetry.h"
 #include "app/tile.h"
@@ -12,8 +13,10 @@
 #include "board/chip.h"
 #include "board/display.h"
 #include "board/eeprom.h"
+#include "board/fuses.h"
 #include "board/links.h"
 #include "board/pins.h"
+#include "board/supply.h"
 #include "board/usart.h"
 #include "model/model.h"
 
@@ -22,8 +25,9 @@ using namespace tilenca;
 namespace {
 
 constexpr uint32_t kHostBaud = 115200;
+constexpr uint8_t kLookMask = 3;     // lines and supply are looked at in every fourth millisecond
 constexpr uint16_t kLeastStack = 64; // fewer unused bytes are an error
-constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255};
+constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255, 0};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
 
 Telemetry telemetry;
@@ -33,6 +37,7 @@ Tile tile(model::kModel, kDefaults, 0);
 SettingsStore<board::Eeprom> store;
 Host host(kDefaults, boot);
 Timing timing;
+LineWatch lines;
 Sentence sentence;
 Button button;
 
@@ -95,36 +100,50 @@ void show(uint32_t now_ms) {
     static uint8_t brightness = 0;
     static uint8_t leds = 0;
     const Appearance now = appearance_of(tile, host.blinking(now_ms), now_ms);
-    if (now.shown != shown || tile.settings().brightness != brightness) {
+    const bool brightness_changed = tile.settings().brightness != brightness;
+    if (now.shown != shown || brightness_changed) {
         shown = now.shown;
         brightness = tile.settings().brightness;
         const Look look = look_of(tile, shown);
         board::show_segments(look.segments, brightness);
         board::show_colour(look.red, look.green, look.blue);
     }
-    if (now.leds != leds) {
+    if (now.leds != leds || brightness_changed) {
         leds = now.leds;
-        for (uint8_t i = 0; i < kSides; ++i) {
-            board::show_led(i, leds >> i & 1);
-        }
+        board::show_leds(leds, brightness);
     }
 }
 
 Health health() {
-    Health now = {timing.compute_us(), timing.gap_us(), timing.awake_permille(), board::stack_unused(), {}};
+    Health now = {
+        timing.compute_us(), timing.gap_us(), timing.awake_permille(), board::stack_unused(), {}, {}, {},
+        board::supply_mv()};
     for (uint8_t i = 0; i < kSides; ++i) {
         now.overruns[i] = board::link_overruns(side_at(i));
+        now.framing_errors[i] = board::link_framing_errors(side_at(i));
+        now.low_ms[i] = lines.low_ms(side_at(i));
     }
     return now;
 }
 
-void report(uint32_t now_ms) {
+void look_at_board(uint32_t now_ms) {
+    if ((now_ms & kLookMask) == 0) {
+        lines.look(board::low_lines(), now_ms);
+        board::supply_watch();
+    }
     board::stack_watch();
     if (board::stack_unused() < kLeastStack) {
         telemetry.failed(Error::Stack);
     }
+}
+
+void report(uint32_t now_ms) {
     while (telemetry.next(now_ms) != Telemetry::Next::Nothing && room_to_speak()) {
-        if (telemetry.write(tile, health(), now_ms, &sentence)) {
+        const Health now = health();
+        if (now.supply_mv != 0 && now.supply_mv < kLeastSupplyMv) {
+            telemetry.failed(Error::Supply, now.supply_mv);
+        }
+        if (telemetry.write(tile, now, now_ms, &sentence)) {
             timing.reported();
         }
         say_sentence();
@@ -148,7 +167,8 @@ void load_settings() {
 } // namespace
 
 void setup() {
-    boot = {board::reset_cause(), board::firmware_id()};
+    const board::Fuses fuses = board::fuses();
+    boot = {board::reset_cause(), board::firmware_id(), {fuses.low, fuses.high, fuses.extended, fuses.lock}};
     if (boot.reset_cause & board::kWatchdogReset) {
         telemetry.failed(Error::Watchdog, board::hung_at());
     }
@@ -158,6 +178,7 @@ void setup() {
     board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
+    board::supply_begin();
     load_settings();
     board::watchdog_begin();
     write_hello(tile, boot, &sentence);
@@ -173,6 +194,7 @@ void loop() {
     write_sides();
     obey(now_ms);
     show(now_ms);
+    look_at_board(now_ms);
     report(now_ms);
     if (!tile.busy()) {
         sleep();

@@ -165,7 +165,7 @@ export class Inspector {
 
   /** @param {Tile} tile */
   showFacts(tile) {
-    const { time } = tile;
+    const { time, board } = tile;
     const facts = [
       ["Updates", String(tile.updates)],
       ["Period", tile.periodMs ? `${tile.periodMs} ms` : ""],
@@ -173,6 +173,7 @@ export class Inspector {
       ["Computes", time ? `${(time.computeUs / 1000).toFixed(1)} ms an update` : ""],
       ["Awake", time ? `${(time.awakePermille / 10).toFixed(0)} % of the time` : ""],
       ["Stack", time ? `${time.stackUnused} bytes never used` : ""],
+      ["Supply", board?.supplyMv ? `${(board.supplyMv / 1000).toFixed(1)} V` : ""],
       ["Model", tile.modelId],
       ["Port", this.tiles.kind === "watched" ? tile.port : ""],
       ["Error", tile.error],

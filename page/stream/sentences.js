@@ -11,10 +11,13 @@
  *   neighbour: number | null, neighbourSide: string}} LinkSentence
  * @typedef {{name: "TIME", tile: number, uptimeMs: number, computeUs: number, awakePermille: number,
  *   gapUs: number, stackUnused: number, dropped: number}} TimeSentence
+ * @typedef {{name: "CHIP", tile: number, fuses: string[]}} ChipSentence
+ * @typedef {{name: "BOARD", tile: number, uptimeMs: number, supplyMv: number | null, framingErrors: number[],
+ *   lowMs: number[]}} BoardSentence
  * @typedef {{name: "ERROR", tile: number, uptimeMs: number, code: string, text: string}} ErrorSentence
  * @typedef {{name: "ACK", tile: number, fields: string[]}} Ack
  * @typedef {{name: "NAK", tile: number, reason: string}} Nak
- * @typedef {Hello | TileSentence | LinkSentence | TimeSentence | ErrorSentence | Ack | Nak} Sentence
+ * @typedef {Hello | TileSentence | LinkSentence | TimeSentence | ChipSentence | BoardSentence | ErrorSentence | Ack | Nak} Sentence
  */
 
 export const PROTOCOL_VERSION = 3;
@@ -67,6 +70,14 @@ const PARSERS = {
       ? {
           name: "TIME", tile: Number(f[0]), uptimeMs: Number(f[1]), computeUs: Number(f[2]),
           awakePermille: Number(f[3]), gapUs: Number(f[4]), stackUnused: Number(f[5]), dropped: Number(f[6]),
+        }
+      : null,
+  CHIP: (f) => (f.length === 5 ? { name: "CHIP", tile: Number(f[0]), fuses: f.slice(1) } : null),
+  BOARD: (f) =>
+    f.length === 11
+      ? {
+          name: "BOARD", tile: Number(f[0]), uptimeMs: Number(f[1]), supplyMv: optional(f[2]),
+          framingErrors: f.slice(3, 7).map(Number), lowMs: f.slice(7).map(Number),
         }
       : null,
   ERROR: (f) =>

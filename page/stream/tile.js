@@ -1,7 +1,7 @@
 // What the page knows of one tile, and what it learns from each of its sentences.
 
 /** @import { Place } from "./source.js" */
-/** @import { LinkSentence, Sentence, TimeSentence } from "./sentences.js" */
+/** @import { BoardSentence, LinkSentence, Sentence, TimeSentence } from "./sentences.js" */
 
 /**
  * How a link is, as the monitor marks it, and the share of frames that arrive whole.
@@ -12,7 +12,8 @@
  *   segments: number, rgb: number[], leds: string,
  *   label: string, margin: number | null, links: string, state: number[], updates: number, uptimeMs: number,
  *   modelId: string, channels: number, classes: number, periodMs: number, brightness: number,
- *   link: Record<string, LinkSentence>, time: TimeSentence | null, error: string, countSide: number,
+ *   link: Record<string, LinkSentence>, time: TimeSentence | null, board: BoardSentence | null,
+ *   error: string, countSide: number,
  *   trouble: string, health: Record<string, LinkHealth>,
  * }} Tile
  *
@@ -25,7 +26,7 @@ export function newTile(port) {
     port, number: Number(/(\d+)\D*$/.exec(port)?.[1] ?? 0), place: null, powered: false, reason: "", frozen: false,
     segments: 0, rgb: [0, 0, 0], leds: "----",
     label: "", margin: null, links: "----", state: [], updates: 0, uptimeMs: 0,
-    modelId: "", channels: 0, classes: 0, periodMs: 0, brightness: 0, link: {}, time: null, error: "", countSide: -1,
+    modelId: "", channels: 0, classes: 0, periodMs: 0, brightness: 0, link: {}, time: null, board: null, error: "", countSide: -1,
     trouble: "", health: {},
   };
 }
@@ -59,6 +60,9 @@ export function hear(tile, sentence) {
       return null;
     case "TIME":
       tile.time = sentence;
+      return null;
+    case "BOARD":
+      tile.board = sentence;
       return null;
     case "ERROR":
       tile.error = `${sentence.code}: ${sentence.text}`;

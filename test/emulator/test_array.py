@@ -129,6 +129,8 @@ def test_the_board_is_wired_as_the_pin_map_says(avr: Compile) -> None:
     assert array[0].leds == (True, False, True, False)
     array[0].press_button()
     array.run(0.001)
+    assert array[0].leds == (True,) * 4, "eyes still see those of before"
+    array.run(0.02)
     assert array[0].segments == 0b0001_1100
     assert array[0].leds == (False, True, False, True)
     assert array[0].display_changes[0].segments == 0b1000_0011

@@ -161,6 +161,45 @@ def test_a_display_blinks_and_then_shows_its_class_again(talk: Talk) -> None:
 SEGMENT_PINS = [("H", 4), ("H", 3), ("E", 3), ("B", 7), ("B", 6), ("H", 6), ("H", 5)]
 
 
+def test_brightness_dims_the_link_leds_and_a_setting_turns_them_off() -> None:
+    """They have no PWM: each is lit in every fourth millisecond, and never two at once."""
+    links = [(0, EAST, 1, WEST), (0, SOUTH, 2, NORTH)]
+    with Array(FIRMWARE_ELF, 3, links) as array:
+        for tile in array:
+            tile.write_eeprom(0, settings_block(tile.index + 1, 100, 0))
+        array.run(1.0)
+        talk = Talk(array)
+        talk.listen(0.1)
+        probes = [array[0].probe("K", bit) for bit in range(4)]
+        for command, shares in (
+            (set_command("brightness", 255), (0, 0.25, 0.25, 0)),
+            (set_command("brightness", 64), (0, 0.25 * 64 / 255, 0.25 * 64 / 255, 0)),
+            (set_command("leds", 0), (0, 0, 0, 0)),
+            (set_command("leds", 1), (0, 0.25 * 64 / 255, 0.25 * 64 / 255, 0)),
+            (set_command("brightness", 0), (0, 0, 0, 0)),
+        ):
+            assert isinstance(talk.ask(command), AckSentence)
+            talk.listen(0.1)
+            for probe in probes:
+                probe.read()
+            talk.listen(1.0)
+            edges = [
+                (edge.time_s, edge.level, led) for led, probe in enumerate(probes) for edge in probe.read()
+            ]
+            lit, since_s = set[int](), [0.0] * 4
+            share = [0.0] * 4
+            for time_s, level, led in sorted(edges):
+                if level:
+                    assert not lit, "two at once"
+                    lit.add(led)
+                    since_s[led] = time_s
+                elif led in lit:
+                    lit.remove(led)
+                    share[led] += time_s - since_s[led]
+            assert share == pytest.approx(shares, abs=0.002), command
+            assert array[0].leds == tuple(part > 0 for part in shares)
+
+
 def test_brightness_dims_every_segment_and_colour(talk: Talk) -> None:
     def duties() -> list[float]:
         """All segments, which are lit while the display blinks, and the colour then, which follows them."""

@@ -6,7 +6,9 @@ from typing import Any
 import pytest
 
 from support.emulate import emulate, report
+from tilenca.base.errors import UsageError
 from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.emulator.faults import parse
 
 
 @pytest.fixture(autouse=True)
@@ -60,6 +62,19 @@ def test_a_tile_that_is_switched_on_again_counts_from_there(capsys: pytest.Captu
     assert 0 < document["agreed_at_update"] <= 20
     again = report(capsys, "--updates", "20", "--period-ms", "100", *AT_ONCE, "--fault", "reset@3:1.5")
     assert again["simulated_s"] == pytest.approx(3.65, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("text", "fact"),
+    [
+        ("supply=1@2", "supply is 1.8 to 5.5 V"),
+        ("supply=6@2", "supply is 0 to 5.5"),
+        ("supply@2", "takes a number"),
+    ],
+)
+def test_a_supply_that_no_chip_runs_at_is_refused(text: str, fact: str) -> None:
+    with pytest.raises(UsageError, match=fact):
+        parse(text)
 
 
 @pytest.mark.parametrize("fault", ["loss=0.02", "delay=3", "drift=50", "adc=2"])

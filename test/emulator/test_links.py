@@ -54,7 +54,7 @@ def elf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sources = [
         FIRMWARE / "src" / "board" / f"{name}.cpp" for name in ("chip", "links", "south_uart", "usart")
     ]
-    sources += [FIRMWARE / "src" / "avr" / f"{name}.S" for name in ("south_uart", "usart")]
+    sources += [FIRMWARE / "src" / "avr" / f"{name}.S" for name in ("clock", "south_uart", "usart")]
     sources += [FIRMWARE / "src" / "core" / "toggles.cpp", directory / "main.cpp"]
     flags = (
         "-mmcu=atmega2560",

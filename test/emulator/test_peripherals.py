@@ -190,6 +190,26 @@ def test_a_timer_starts_conversions(avr: Compile, source: int, setup: str) -> No
     assert words(run(avr(program), 0.1).read_memory(0x1000, 2))[0] in range(96, 101)
 
 
+def test_the_bandgap_converts_to_its_share_of_the_supply(avr: Compile) -> None:
+    source = """
+    int main(void) {
+        for (uint8_t i = 0; i < 2; ++i) {
+            ADMUX = 0x40 | (i ? 0x1E : 0x01); ADCSRA = 0xC7;
+            while (ADCSRA & 0x40) { }
+            result16[i] = ADC;
+        }
+        for (;;) { }
+    }"""
+    found = {}
+    for volts in (5.0, 4.5, 3.3):
+        array = Array(avr(source))
+        array[0].set_analog(1, 777)  # a share of the supply already
+        array[0].set_supply(volts)
+        array.run(0.01)
+        found[volts] = words(array[0].read_memory(0x1000, 4))
+    assert found == {5.0: [777, 225], 4.5: [777, 250], 3.3: [777, 341]}
+
+
 def test_an_edge_of_int0_starts_one_conversion_each(avr: Compile) -> None:
     source = """
     ISR(ADC_vect) { result[0]++; result16[1] = ADC; EIFR = 1; }

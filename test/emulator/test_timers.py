@@ -188,3 +188,17 @@ def test_a_compare_value_that_comes_within_reach_interrupts(avr: Compile) -> Non
     memory = run(avr(source), 0.002).read_memory(0x1000, 2)
     assert memory[1] == 0
     assert memory[0] in range(30, 42)  # of 420 cycles each, in a little less than a millisecond
+
+
+def test_setting_up_the_adc_loses_no_overflow(avr: Compile) -> None:
+    """The ADC asks timers 0 and 1 which of their flags may start it, perhaps in the cycle of an overflow."""
+    source = """
+    ISR(TIMER1_OVF_vect) { result16[0]++; }
+    int main(void) {
+        result16[0] = 0;
+        ICR1 = 419; TCCR1A = 1 << WGM11; TCCR1B = 1 << WGM13 | 1 << WGM12 | 1 << CS10; TIMSK1 = 1 << TOIE1;
+        sei();
+        for (;;) { ADCSRA = 1 << ADEN | 1 << ADSC; }
+    }"""
+    overflows = words(run(avr(source), 0.1).read_memory(0x1000, 2))[0]
+    assert overflows == pytest.approx(1.6e6 / 420, abs=2)

@@ -10,8 +10,10 @@ from support.scripted_port import HELLO, Device
 from tilenca.fleet.identify import SILENT, ask_all
 from tilenca.fleet.lock import port_lock
 from tilenca.protocol.board_test import BOARD_TEST
-from tilenca.protocol.commands import ask_command
+from tilenca.protocol.commands import ask_command, chip_command
 from tilenca.protocol.sentences import (
+    BoardSentence,
+    ChipSentence,
     TileSentence,
     format_sentence,
     framed,
@@ -61,6 +63,22 @@ def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack
     assert answers[asked.port].hello == HELLO
     assert asked.heard[0] == ask_command()
     assert said_when_asked[0] >= 3, "what was said before a reset proves nothing"
+
+
+def test_what_a_tile_measures_is_awaited_where_it_is_wanted(stack: ExitStack) -> None:
+    board = BoardSentence(7, 500, 4380, (0,) * 4, (0,) * 4)
+    chip = ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF)
+
+    def answer(line: bytes, count: int) -> bytes:
+        assert line == chip_command()
+        return format_sentence(chip) + format_sentence(board)
+
+    new = stack.enter_context(Device(format_sentence(HELLO), answer))
+    old = stack.enter_context(Device(format_sentence(HELLO)))
+    answers = ask_all([new.port, old.port], "a test", board_s=1.0)
+    assert [answers[port].board for port in (new.port, old.port)] == [board, None]
+    assert [answers[port].chip for port in (new.port, old.port)] == [chip, None]
+    assert answers[old.port].hello == HELLO, "an older firmware says no such thing"
 
 
 def test_a_board_under_test_is_told_from_one_that_is_silent(stack: ExitStack) -> None:

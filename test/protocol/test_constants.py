@@ -23,7 +23,7 @@ def test_constants_of_both_twins_agree() -> None:
     shared = {name for name in cpp if hasattr(constants_of_python, name)}
     assert shared >= {
         "PROTOCOL_VERSION", "KIND_STATE", "HEADER_SIZE", "CRC_SIZE", "MAX_CHANNELS", "MESSAGE_OFFSET",
-        "MESSAGE_MAX", "SILENT_PERIODS", "MAX_SENTENCE", "MAX_COMMAND", "MAX_BLINK_S",
+        "MESSAGE_MAX", "SILENT_PERIODS", "MAX_SENTENCE", "LEAST_SUPPLY_MV", "MAX_COMMAND", "MAX_BLINK_S",
         "SETTINGS_SIZE", "SETTINGS_VERSION", "MIN_PERIOD_MS", "MAX_PERIOD_MS",
     }  # fmt: skip
     assert {name: cpp[name] for name in shared} == {

@@ -11,6 +11,8 @@ from tilenca.protocol.checksums import checksum
 from tilenca.protocol.constants import MAX_SENTENCE, PROTOCOL_VERSION
 from tilenca.protocol.sentences import (
     AckSentence,
+    BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -40,6 +42,8 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
         st.none() | u8, st.none() | sides,
     ),
     st.builds(TimeSentence, u8, u32, u32, u16, u32, u16, u32),
+    st.builds(ChipSentence, u8, u8, u8, u8, u8),
+    st.builds(BoardSentence, u8, u32, st.none() | u16, st.tuples(*[u16] * 4), st.tuples(*[u32] * 4)),
     st.builds(ErrorSentence, u8, u32, words, texts),
     st.builds(AckSentence, u8, words, st.lists(texts.filter(len), max_size=2).map(tuple)),
     st.builds(NakSentence, u8, words, texts),
@@ -65,6 +69,12 @@ SENTENCES: dict[str, Sentence] = {
     "link that never heard a frame": LinkSentence(7, 5, "W", 0, 0, 0, 0, 0, None, 0, None, None),
     "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210, 12, 200, "W"),
     "time": TimeSentence(7, 1000, 14200, 163, 2048, 5000, 3),
+    "chip": ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF),
+    "board whose supply is not known": BoardSentence(7, 500, None, (0,) * 4, (0,) * 4),
+    "board with a line that is low": BoardSentence(
+        7, 60500, 4380, (1, 0, 65535, 12), (0, 0, 60000, 4294967295)
+    ),
+    "error of a low supply": ErrorSentence(7, 1500, "SUPPLY", "4380 mV"),
     "error without an address": ErrorSentence(7, 12, "SETTINGS", "defaults in force"),
     "error with an address": ErrorSentence(0, 3, "WATCHDOG", "hung at 0x00A2C"),
     "answer to a period": AckSentence(7, "SET", ("period", "20")),
@@ -153,6 +163,8 @@ def test_a_good_checksum_alone_is_no_sentence(line: bytes) -> None:
         b"HELLO,3,2,ABCD,3,4,5,6,G0,00000000,1",
         b"HELLO,3,2,ABCD,3,4,5,6,00",
         b"TIME,1,2,3,4,5,6",
+        b"BOARD,1,2,5000,0,0,0,0,0,0,0",
+        b"BOARD,1,2,5000,0,0,0,0,0,0,0,",
         b"ERROR,1,2,lower,text",
         b"ACK,1",
         b"NAK,1,VALUE",

@@ -17,7 +17,16 @@ def test_settings_case(name: str, block: str, expected: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "values", [(256, 100, 0), (-1, 100, 0), (1, 9, 0), (1, 10001, 0), (1, 100, 65536), (1, 100, 0, 256)]
+    "values",
+    [
+        (256, 100, 0),
+        (-1, 100, 0),
+        (1, 9, 0),
+        (1, 10001, 0),
+        (1, 100, 65536),
+        (1, 100, 0, 256),
+        (1, 100, 0, 255, 2),
+    ],
 )
 def test_settings_out_of_range_are_refused(values: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"must be \d+\.\.\d+"):

@@ -73,6 +73,7 @@ def tile_calls(w: World) -> dict[str, tuple[Any, ...]]:
         "tile_hold_pin": (*pin, 1),
         "tile_push_edge": (*pin, 100, 1),
         "tile_set_analog": (0, 0),
+        "tile_set_supply": (5.0,),
         "tile_set_adc_noise": (0.0, 0),
         "tile_set_comparator": (0, 0),
         "tile_set_spi_loopback": (0,),
@@ -182,6 +183,7 @@ def other_bad_calls(w: World) -> dict[str, list[tuple[Any, ...]]]:
         "tile_hold_pin": [(a, 0, *pin, 1) for pin in pins],
         "tile_push_edge": [(a, 0, *pin, 100, 1) for pin in pins],
         "tile_set_analog": [(a, 0, 16, 0), (a, 0, 2**32 - 1, 0), (a, 0, 0, 1024)],
+        "tile_set_supply": [(a, 0, volts) for volts in (1.7, 5.6, *NO_NUMBERS)],
         "tile_set_adc_noise": [(a, 0, deviation, 0) for deviation in (-1.0, *NO_NUMBERS)],
         "tile_set_comparator": [(a, 0, 1025, 0), (a, 0, 0, 1025)],
         "side_pin": [

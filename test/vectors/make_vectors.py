@@ -133,9 +133,9 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
 
     paper = (7, 2000, 30, 128)
     return [
-        ("the paper's", block(*paper), "7 2000 30 128"),
-        ("no id, shortest period, for ever, dark", block(0, 10, 0, 0), "0 10 0 0"),
-        ("greatest values", block(255, 10000, 65535, 255), "255 10000 65535 255"),
+        ("the paper's", block(*paper), "7 2000 30 128 1"),
+        ("no id, shortest period, for ever, dark", block(0, 10, 0, 0), "0 10 0 0 1"),
+        ("greatest values", block(255, 10000, 65535, 255), "255 10000 65535 255 1"),
         ("erased", b"\xff" * 12, "ignored"),
         ("zeros", b"\0" * 12, "ignored"),
         ("period too short", block(7, 9, 30, 128), "ignored"),
@@ -143,7 +143,8 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
         ("wrong magic", block(*paper, magic=b"NT\2"), "ignored"),
         ("version 1", block(*paper, magic=b"TN\1"), "ignored"),
         ("version 1's shorter block", block(*paper, magic=b"TN\1")[:10] + b"\xff\xff", "ignored"),
-        ("reserved byte used", block(*paper, rest=1), "ignored"),
+        ("link LEDs off", block(*paper, rest=1), "7 2000 30 128 0"),
+        ("link LEDs neither on nor off", block(*paper, rest=2), "ignored"),
         ("bit flipped in the crc", block(*paper, bad_crc=1), "ignored"),
         ("bit flipped in the updates", block(*paper)[:6] + b"\x1f" + block(*paper)[7:], "ignored"),
     ]
@@ -158,6 +159,10 @@ def sentence_cases() -> list[tuple[str, str]]:
         ("link that never heard a frame", "LINK,7,5,W,0,0,0,0,0,,0,,"),
         ("link with a corrupt frame", "LINK,7,300,E,1,3,1,0,0,210,12,200,W"),
         ("time", "TIME,7,1000,14200,163,2048,5000,3"),
+        ("chip", "CHIP,7,FF,D8,FD,CF"),
+        ("board whose supply is not known", "BOARD,7,500,,0,0,0,0,0,0,0,0"),
+        ("board with a line that is low", "BOARD,7,60500,4380,1,0,65535,12,0,0,60000,4294967295"),
+        ("error of a low supply", "ERROR,7,1500,SUPPLY,4380 mV"),
         ("error without an address", "ERROR,7,12,SETTINGS,defaults in force"),
         ("error with an address", "ERROR,0,3,WATCHDOG,hung at 0x00A2C"),
         ("answer to a period", "ACK,7,SET,period,20"),
@@ -193,6 +198,7 @@ def command_cases() -> list[tuple[str, bytes, list[str]]]:
         ("preset", line("SET,preset,paper"), ["ok SET,preset,paper"]),
         ("blink", line("BLINK,60"), ["ok BLINK,60"]),
         ("restart", line("RESTART"), ["ok RESTART"]),
+        ("chip", line("CHIP"), ["ok CHIP"]),
         ("without an end of line", ask[:-2] + ask[:-2], [asked, asked]),
         ("garbage in between", b"\0\xffAT\r\n*00" + ask + b"hello" + ask, [asked, asked]),
         ("empty", b"$*00\r\n", ["ok "]),

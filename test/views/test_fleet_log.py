@@ -5,6 +5,7 @@ import json
 import pytest
 
 from support.tile_port import STATE
+from tilenca.fleet.grid import Grid
 from tilenca.fleet.state import Event, Fleet, PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import TileSentence
@@ -48,13 +49,13 @@ def test_every_event_is_a_line(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_news_is_what_changed(capsys: pytest.CaptureFixture[str]) -> None:
     fleet = Fleet()
-    shown(NewsLines(0.0, fleet), fleet)
+    shown(NewsLines(0.0, fleet, Grid()), fleet)
     told = [line.split(PORT + " ")[1] for line in capsys.readouterr().out.splitlines()]
     assert told == ["port open", "shows 4", "damaged: $x", "shows 1, before 4"]
 
 
 def test_what_was_before_the_start_is_known_and_not_printed(capsys: pytest.CaptureFixture[str]) -> None:
     fleet = Fleet()
-    shown(NewsLines(3.0, fleet), fleet)
+    shown(NewsLines(3.0, fleet, Grid()), fleet)
     told = [line.split(PORT + " ")[1] for line in capsys.readouterr().out.splitlines()]
     assert told == ["shows 1, before 4"], "the 4 of before is not told again"

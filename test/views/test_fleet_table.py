@@ -8,6 +8,7 @@ from tilenca.fleet.state import Fleet, PortNews, TileView
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
     AckSentence,
+    BoardSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -37,6 +38,9 @@ def test_a_log_line_names_time_port_and_tile() -> None:
         ),
         "tile 7 TIME computes 14200 us awake 16.3 % longest turn 2048 us stack 5000 bytes unused "
         "3 sentences dropped": TimeSentence(7, 0, 14200, 163, 2048, 5000, 3),
+        "tile 7 BOARD supply 4.38 V framing errors N 1 E 0 S 0 W 9 low for N 0 ms E 0 ms S 800 ms W 0 ms": (
+            BoardSentence(7, 0, 4380, (1, 0, 0, 9), (0, 0, 800, 0))
+        ),
         "tile 7 ERROR SETTINGS defaults in force": ErrorSentence(7, 0, "SETTINGS", "defaults in force"),
         "tile 7 ACK SET period 20": AckSentence(7, "SET", ("period", "20")),
         "tile 7 NAK SET: wrong field": NakSentence(7, "VALUE", "SET"),
@@ -47,6 +51,15 @@ def test_a_log_line_names_time_port_and_tile() -> None:
     for expected, sentence in sentences.items():
         line = log_line(Heard(0.0, "/dev/ttyACM0", b"", sentence))
         assert line.endswith(f":00.000 /dev/ttyACM0 {expected}")
+
+
+def test_a_line_that_stays_low_is_noted() -> None:
+    view = TileView("p")
+    view.take(PortNews(0.0, "p", is_open=True))
+    view.take(Heard(1.0, "p", b"", BoardSentence(7, 1000, 5000, (0, 3, 0, 0), (0, 0, 900, 0))))
+    assert cells(view, 1.0)[-1] == "E no stop bits, S low"
+    view.take(Heard(2.0, "p", b"", BoardSentence(7, 2000, 5000, (0, 3, 0, 0), (0, 0, 900, 0))))
+    assert cells(view, 2.0)[-1] == ""
 
 
 def test_a_tile_that_fell_silent_is_marked() -> None:

@@ -257,6 +257,14 @@ export class Tile {
   }
 
   /**
+   * The supply voltage, as the ADC sees it beside the bandgap's 1.1 V.
+   * @param {number} volts 1.8 to 5.5
+   */
+  setSupply(volts) {
+    this.#call("set_supply", volts);
+  }
+
+  /**
    * Conversions are off by a normal deviate, in units of the result's lowest bit.
    * @param {number} deviation
    * @param {number | bigint} [seed] as in `tilenca.emulator`

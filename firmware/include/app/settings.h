@@ -15,7 +15,8 @@ struct Settings {
     uint8_t tile_id;    // 0: not set
     uint16_t period_ms; // from update to update
     uint16_t updates;   // after these the tile stops; 0: never
-    uint8_t brightness; // of digit and colour, of 255
+    uint8_t brightness; // of digit, colour and link LEDs, of 255
+    uint8_t leds_off;   // 1: the link LEDs stay dark
 };
 
 // Reads a block from EEPROM. If anything in it is wrong, returns false and leaves `settings` unchanged.

@@ -17,6 +17,9 @@ uint32_t hung_at();
 // CRC-32 of the program in flash. Takes 57 cycles a byte, 0.14 s in all.
 uint32_t firmware_id();
 
+// CRC-32 of the boot section of 8 KiB, where the lock bits do not hide it; 0: it is erased. Takes 30 ms.
+uint32_t bootloader_id();
+
 // Starts the watchdog, which restarts the program if watchdog_feed() is not called for a quarter of a second.
 void watchdog_begin();
 void watchdog_feed();

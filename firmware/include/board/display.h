@@ -17,8 +17,9 @@ void show_segments(uint8_t segments, uint8_t brightness = 255);
 // Duties of 0..255.
 void show_colour(uint8_t red, uint8_t green, uint8_t blue);
 
-// One of the four debug LEDs, in the order N E S W.
-void show_led(uint8_t index, bool lit);
+// The debug LEDs, one bit each in the order N E S W. Each is lit for at most a quarter of the time, never two
+// at once. Brightness is 0..255, and that of the segments too unless it is 0 or 255.
+void show_leds(uint8_t leds, uint8_t brightness = 255);
 
 bool button_closed();
 

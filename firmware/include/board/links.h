@@ -18,6 +18,14 @@ constexpr uint16_t kReadEveryUs = 5000;
 
 void links_begin();
 
+// East and west have a USART at both ends. North is connected to the software UART of the tile above.
+constexpr uint32_t baud_of(Side side) {
+    return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
+}
+
+// Lets a side that has a USART begin anew at another rate.
+void link_begin(Side side, uint32_t baud);
+
 // The next byte from this side, if any.
 bool link_read(Side side, uint8_t* byte);
 
@@ -30,6 +38,12 @@ void link_write(Side side, const uint8_t* bytes, uint8_t size);
 // How many bytes were lost for want of room; on the south side, how often edges were lost for want of room or
 // to noise. Stops at 65,535.
 uint16_t link_overruns(Side side);
+
+// How many bytes came without a stop bit. Stops at 65,535, but wraps on the south side.
+uint16_t link_framing_errors(Side side);
+
+// The sides whose receiving line is low now: one bit each, in the order N E S W.
+uint8_t low_lines();
 
 } // namespace board
 } // namespace tilenca

@@ -37,5 +37,8 @@ bool south_idle();
 // at 65,535.
 uint16_t south_overruns();
 
+// How many bytes came without a stop bit, as usart_framing_errors(). Wraps.
+uint16_t south_framing_errors();
+
 } // namespace board
 } // namespace tilenca

@@ -26,5 +26,8 @@ bool usart_idle(uint8_t number);
 // Stops at 65,535.
 uint16_t usart_overruns(uint8_t number);
 
+// How many bytes came without a stop bit: the line was still low. Stops at 65,535.
+uint16_t usart_framing_errors(uint8_t number);
+
 } // namespace board
 } // namespace tilenca

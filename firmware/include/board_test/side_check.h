@@ -38,7 +38,7 @@ class SideCheck {
     void write_packet(uint8_t (&packet)[kPacketSize]);
 
     // Takes the next byte from the line.
-    void receive(uint8_t byte);
+    void receive(uint8_t byte, uint32_t now_ms);
 
     // Takes the line's present level; call it now and then.
     void look(bool high) { was_high_ |= high; }
@@ -46,13 +46,20 @@ class SideCheck {
     // Ends a window and judges it. True if the verdict has changed.
     bool judge();
 
+    // Whether the neighbour's clock is known, and by how many thousandths it is slower than this tile's. A
+    // neighbour sends a packet every kPacketMs of its own time; seconds of them are enough.
+    bool knows_clock() const { return knows_clock_ && verdict_ == Verdict::Neighbour; }
+    int16_t slower_permille() const { return slower_permille_; }
+    static constexpr uint8_t kMostPermille = 16; // of two resonators that are well
+
     Verdict verdict() const { return verdict_; }
 
     // How many packets got lost in the last window.
     uint8_t lost() const { return lost_; }
 
   private:
-    void accept(uint8_t from, uint8_t sequence);
+    void accept(uint8_t from, uint8_t sequence, uint32_t now_ms);
+    void compare_clocks();
     Verdict found() const;
 
     Side side_;
@@ -61,6 +68,15 @@ class SideCheck {
     uint8_t sequence_out_ = 0;
     uint8_t sequence_in_ = 0;
     bool in_sequence_ = false; // whether the next packet has to follow sequence_in_
+
+    // Since the clocks are compared.
+    static constexpr uint16_t kComparedPackets = 200;
+    uint32_t began_ms_ = 0;
+    uint32_t last_ms_ = 0;
+    uint16_t packets_ = 0;
+    bool comparing_ = false;
+    bool knows_clock_ = false;
+    int16_t slower_permille_ = 0;
 
     // The present window.
     Side from_ = Side::North;

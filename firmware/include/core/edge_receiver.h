@@ -26,6 +26,9 @@ class EdgeReceiver {
     template <typename Source>
     int16_t receive(Source source, uint16_t now);
 
+    // How many bytes had no stop bit: the line was still low. Wraps.
+    uint16_t framing_errors() const { return framing_errors_; }
+
     // Starts anew, after edges were lost or the line was noisy.
     void reset() { state_ = State(); }
 
@@ -41,13 +44,15 @@ class EdgeReceiver {
         uint8_t level = kHigh; // of the line since the last edge: kHigh or 0
         uint8_t bit = kIdle;   // next to be sampled: 0 the start bit, 1..8 data, 9 the stop bit
         uint8_t byte = 0;
-        uint16_t sample_at = 0; // the middle of that bit
+        uint8_t framing_errors = 0; // of this call to receive()
+        uint16_t sample_at = 0;     // the middle of that bit
     };
 
     static bool sample(State& state, uint16_t until);
     static bool change(State& state, uint16_t stamp);
 
     State state_;
+    uint16_t framing_errors_ = 0;
 };
 
 // The level has stayed the same until this time. True if this completed state.byte.
@@ -65,6 +70,7 @@ inline bool EdgeReceiver<kBitCounts>::sample(State& state, uint16_t until) {
         } else {
             state.bit = kIdle;
             complete = state.level; // no stop bit: not a byte
+            state.framing_errors += state.level == 0;
         }
     }
     state.sample_at = until - static_cast<uint16_t>(since_sample);
@@ -101,6 +107,10 @@ inline int16_t EdgeReceiver<kBitCounts>::receive(Source source, uint16_t now) {
     }
     if (!complete) {
         complete = sample(state, now);
+    }
+    if (state.framing_errors != 0) {
+        framing_errors_ += state.framing_errors;
+        state.framing_errors = 0;
     }
     state_ = state;
     return complete ? state.byte : kNoByte;

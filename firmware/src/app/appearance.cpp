@@ -22,7 +22,7 @@ Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms) {
     if (blinking) {
         appearance.shown = lit_phase(now_ms) ? Appearance::kFound : Tile::kNothing;
     }
-    for (uint8_t i = 0, mask = 1; i < kSides; ++i, mask <<= 1) {
+    for (uint8_t i = 0, mask = 1; i < kSides && !tile.settings().leds_off; ++i, mask <<= 1) {
         const Link& link = tile.link(side_at(i));
         if (link.alive() || (link.foreign() && lit_phase(now_ms))) {
             appearance.leds |= mask;

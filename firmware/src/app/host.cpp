@@ -36,6 +36,8 @@ Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
     uint16_t seconds;
     if (equal(name, "ASK") && reader_.fields() == 1) {
         write_hello(*tile, boot_, sentence);
+    } else if (equal(name, "CHIP") && reader_.fields() == 1) {
+        write_chip(*tile, boot_, sentence);
     } else if (equal(name, "SET") && reader_.fields() == 3) {
         return begin_set(*tile, sentence);
     } else if (equal(name, "BLINK") && reader_.fields() == 2 &&
@@ -50,8 +52,8 @@ Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
         begin_ack(*tile, sentence);
         sentence->end();
     } else {
-        const bool known =
-            equal(name, "ASK") || equal(name, "SET") || equal(name, "BLINK") || equal(name, "RESTART");
+        const bool known = equal(name, "ASK") || equal(name, "CHIP") || equal(name, "SET") ||
+                           equal(name, "BLINK") || equal(name, "RESTART");
         write_nak(*tile, known ? "VALUE" : "UNKNOWN", name, sentence);
     }
     return Result::Answer;
@@ -85,6 +87,8 @@ bool Host::change(Settings* settings) const {
         settings->updates = number;
     } else if (equal(name, "brightness") && number_of(text, 0xFF, &number)) {
         settings->brightness = static_cast<uint8_t>(number);
+    } else if (equal(name, "leds") && number_of(text, 1, &number)) {
+        settings->leds_off = number == 0;
     } else {
         return false;
     }

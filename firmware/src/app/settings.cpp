@@ -20,7 +20,7 @@ constexpr uint8_t kChecked = kSettingsSize - 2;
 } // namespace
 
 bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings) {
-    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion || block[9] != 0) {
+    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion || block[9] > 1) {
         return false;
     }
     if (word_at(block + kChecked) != crc16(block, kChecked)) {
@@ -30,7 +30,7 @@ bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings) {
     if (period_ms < kMinPeriodMs || period_ms > kMaxPeriodMs) {
         return false;
     }
-    *settings = {block[3], period_ms, word_at(block + 6), block[8]};
+    *settings = {block[3], period_ms, word_at(block + 6), block[8], block[9]};
     return true;
 }
 
@@ -42,7 +42,7 @@ void write_settings(const Settings& settings, uint8_t (&block)[kSettingsSize]) {
     put_word(settings.period_ms, block + 4);
     put_word(settings.updates, block + 6);
     block[8] = settings.brightness;
-    block[9] = 0;
+    block[9] = settings.leds_off;
     put_word(crc16(block, kChecked), block + kChecked);
 }
 

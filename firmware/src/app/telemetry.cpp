@@ -4,7 +4,7 @@ namespace tilenca {
 
 namespace {
 
-const char* const kErrorCodes[kErrors] = {"SETTINGS", "WATCHDOG", "STACK"};
+const char* const kErrorCodes[kErrors] = {"SETTINGS", "WATCHDOG", "STACK", "SUPPLY"};
 
 } // namespace
 
@@ -20,6 +20,15 @@ void write_hello(const Tile& tile, const Boot& boot, Sentence* sentence) {
     sentence->hex(boot.reset_cause, 2);
     sentence->hex(boot.firmware_id, 8);
     sentence->number(tile.settings().brightness);
+    sentence->end();
+}
+
+void write_chip(const Tile& tile, const Boot& boot, Sentence* sentence) {
+    sentence->begin("CHIP");
+    sentence->number(tile.settings().tile_id);
+    for (uint8_t byte : boot.fuses) {
+        sentence->hex(byte, 2);
+    }
     sentence->end();
 }
 
@@ -82,7 +91,21 @@ void write_time(const Tile& tile, const Health& health, uint32_t dropped, uint32
     sentence->end();
 }
 
-void write_error(const Tile& tile, Error error, uint32_t place, uint32_t now_ms, Sentence* sentence) {
+void write_board(const Tile& tile, const Health& health, uint32_t now_ms, Sentence* sentence) {
+    sentence->begin("BOARD");
+    sentence->number(tile.settings().tile_id);
+    sentence->number(now_ms);
+    health.supply_mv != 0 ? sentence->number(health.supply_mv) : sentence->nothing();
+    for (uint16_t errors : health.framing_errors) {
+        sentence->number(errors);
+    }
+    for (uint32_t low_ms : health.low_ms) {
+        sentence->number(low_ms);
+    }
+    sentence->end();
+}
+
+void write_error(const Tile& tile, Error error, uint32_t detail, uint32_t now_ms, Sentence* sentence) {
     sentence->begin("ERROR");
     sentence->number(tile.settings().tile_id);
     sentence->number(now_ms);
@@ -92,13 +115,17 @@ void write_error(const Tile& tile, Error error, uint32_t place, uint32_t now_ms,
         sentence->text("defaults in force");
         break;
     case Error::Watchdog:
-        sentence->text(place == 0 ? "hung" : "hung at 0x");
-        if (place != 0) {
-            sentence->more_hex(place, 5);
+        sentence->text(detail == 0 ? "hung" : "hung at 0x");
+        if (detail != 0) {
+            sentence->more_hex(detail, 5);
         }
         break;
     case Error::Stack:
         sentence->text("almost full");
+        break;
+    case Error::Supply:
+        sentence->number(detail);
+        sentence->more(" mV");
         break;
     }
     sentence->end();
@@ -118,9 +145,11 @@ void Telemetry::period_ended(const Tile& tile) {
     link_due_ = true;
 }
 
-void Telemetry::failed(Error error, uint32_t place) {
+void Telemetry::failed(Error error, uint32_t detail) {
     if (error == Error::Watchdog) {
-        hung_at_ = place;
+        hung_at_ = detail;
+    } else if (error == Error::Supply && !(errors_told_ & mask_of(error))) {
+        sagged_mv_ = static_cast<uint16_t>(detail);
     }
     errors_due_ |= mask_of(error) & ~errors_told_;
     errors_told_ |= mask_of(error);
@@ -136,13 +165,18 @@ Telemetry::Next Telemetry::next(uint32_t now_ms) const {
     if (link_due_) {
         return Next::Link;
     }
-    return now_ms - last_time_ms_ >= kTimePeriodMs ? Next::Time : Next::Nothing;
+    const uint32_t since_time_ms = now_ms - last_time_ms_;
+    if (since_time_ms >= kTimePeriodMs) {
+        return Next::Time;
+    }
+    return board_due_ && since_time_ms >= kBoardAfterMs ? Next::Board : Next::Nothing;
 }
 
 bool Telemetry::write(const Tile& tile, const Health& health, uint32_t now_ms, Sentence* sentence) {
     switch (next(now_ms)) {
     case Next::Error:
-        write_error(tile, first_error(), hung_at_, now_ms, sentence);
+        write_error(tile, first_error(), first_error() == Error::Supply ? sagged_mv_ : hung_at_, now_ms,
+                    sentence);
         errors_due_ &= ~mask_of(first_error());
         break;
     case Next::Tile:
@@ -158,7 +192,12 @@ bool Telemetry::write(const Tile& tile, const Health& health, uint32_t now_ms, S
         // The next one is due a second after this one was due, not after it was written.
         last_time_ms_ += (now_ms - last_time_ms_) / kTimePeriodMs * kTimePeriodMs;
         write_time(tile, health, dropped_, now_ms, sentence);
+        board_due_ = true;
         return true;
+    case Next::Board:
+        board_due_ = false;
+        write_board(tile, health, now_ms, sentence);
+        break;
     case Next::Nothing:
         break;
     }

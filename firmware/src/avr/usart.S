@@ -36,6 +36,23 @@
 \vector:
 .endm
 
+; Adds one to a counter, up to 65,535, and returns. Keeps r24 and the flags.
+.macro count counter
+    push r24
+    in r24, _SFR_IO_ADDR(SREG)
+    push r24
+    lds r30, \counter
+    lds r31, \counter + 1
+    adiw r30, 1
+    breq 5f
+    sts \counter + 1, r31
+    sts \counter, r30
+5:  pop r24
+    out _SFR_IO_ADDR(SREG), r24
+    pop r24
+    ret
+.endm
+
 ; A byte has come. `registers`: the address of UCSRnA.
 .macro receive vector, number, registers
     handler \vector
@@ -44,6 +61,8 @@
     lds r24, \registers + USART_DATA
     sbrc r31, DOR0
     rjmp 3f
+    sbrc r31, FE0
+    rjmp 6f
 1:  ldi r31, hi8(tilenca_received_page)
     lds r30, tilenca_received + RING_BYTES * \number + RING_HEAD
     st Z+, r24 ; without effect if there is no room, since the head then stays
@@ -57,19 +76,10 @@
     leave
 3:  rcall 4f ; the USART itself lost a byte before this one
     rjmp 1b
-4:  push r24
-    in r24, _SFR_IO_ADDR(SREG)
-    push r24
-    lds r30, tilenca_usart_overruns + 2 * \number
-    lds r31, tilenca_usart_overruns + 2 * \number + 1
-    adiw r30, 1
-    breq 5f
-    sts tilenca_usart_overruns + 2 * \number + 1, r31
-    sts tilenca_usart_overruns + 2 * \number, r30
-5:  pop r24
-    out _SFR_IO_ADDR(SREG), r24
-    pop r24
-    ret
+6:  rcall 7f ; the byte has no stop bit
+    rjmp 1b
+4:  count tilenca_usart_overruns + 2 * \number
+7:  count tilenca_usart_framing_errors + 2 * \number
     .size \vector, . - \vector
 .endm
 

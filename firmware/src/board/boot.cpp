@@ -59,6 +59,8 @@ uint32_t hung_at() {
 
 namespace {
 
+constexpr uint32_t kBootSection = 0x3E000;
+
 // Reads bytes of flash and advances `address`.
 void read_flash(uint32_t* address, uint8_t* bytes, uint8_t size) {
     RAMPZ = static_cast<uint8_t>(*address >> 16);
@@ -93,6 +95,20 @@ uint32_t firmware_id() {
         crc.add(bytes, size);
     }
     return crc.value();
+}
+
+uint32_t bootloader_id() {
+    Crc32 crc;
+    uint8_t bytes[32];
+    bool erased = true;
+    for (uint32_t at = kBootSection; at <= FLASHEND;) {
+        read_flash(&at, bytes, sizeof bytes);
+        crc.add(bytes, sizeof bytes);
+        for (uint8_t byte : bytes) {
+            erased &= byte == 0xFF;
+        }
+    }
+    return erased ? 0 : crc.value();
 }
 
 // Interrupt first, and reset only if the interrupt does not come through: old boot loaders of the Mega leave

@@ -4,18 +4,24 @@
 #include <avr/io.h>
 #include <avr/sleep.h>
 
+#include "board/scratch.h"
+
 namespace tilenca {
 namespace board {
 
 namespace {
 
-volatile uint8_t ticks = 0; // milliseconds modulo 256, since a longer count would take the interrupt longer
-uint32_t now = 0;           // the last result of now_ms()
+uint32_t now = 0; // the last result of now_ms()
 
 } // namespace
 
+// What the interrupts in avr/clock.S work on.
+extern "C" {
+volatile uint8_t tilenca_ticks = 0; // milliseconds modulo 256, since a longer count would take longer
+volatile uint8_t tilenca_leds = 0;  // the link LEDs to light: bits as in show_leds()
+}
+
 void clock_begin() {
-    TIMSK0 = 0;
     // Fast PWM with ICR4 as top (mode 14), one count per cycle: its outputs dim segments.
     TCCR4B = 0;
     TCCR4A = 1 << WGM41;
@@ -23,12 +29,13 @@ void clock_begin() {
     ICR4 = kClockTop - 1;
     TCNT4 = 0;
     TIFR4 = 1 << TOV4;
+    scratch_begin();
     TIMSK4 = 1 << TOIE4;
     TCCR4B |= 1 << CS40;
 }
 
 uint32_t now_ms() {
-    now += static_cast<uint8_t>(ticks - static_cast<uint8_t>(now));
+    now += static_cast<uint8_t>(tilenca_ticks - static_cast<uint8_t>(now));
     return now;
 }
 
@@ -40,15 +47,11 @@ uint16_t stamp() {
     return count;
 }
 
-ISR(TIMER4_OVF_vect) {
-    ++ticks;
-}
-
 void sleep() {
     set_sleep_mode(SLEEP_MODE_IDLE);
     sleep_enable();
     cli();
-    while (ticks == static_cast<uint8_t>(now)) {
+    while (tilenca_ticks == static_cast<uint8_t>(now)) {
         sei(); // takes effect after the next instruction, so a tick in between ends the sleep at once
         sleep_cpu();
         cli();

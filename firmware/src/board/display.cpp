@@ -9,6 +9,11 @@
 namespace tilenca {
 namespace board {
 
+extern "C" volatile uint8_t tilenca_leds; // chip.cpp
+static_assert(kDebugLeds[0].port == 'K' && kDebugLeds[0].bit == 0 && kDebugLeds[1].bit == 1 &&
+                  kDebugLeds[2].bit == 2 && kDebugLeds[3].bit == 3,
+              "avr/clock.S");
+
 void display_begin() {
     for (Pin pin : kSegments) {
         make_output(pin);
@@ -105,8 +110,14 @@ void show_colour(uint8_t red, uint8_t green, uint8_t blue) {
     TCCR3A |= 1 << COM3C1;
 }
 
-void show_led(uint8_t index, bool lit) {
-    set(kDebugLeds[index], lit);
+void show_leds(uint8_t leds, uint8_t brightness) {
+    tilenca_leds = brightness == 0 ? 0 : leds;
+    if (brightness == 0 || brightness == 0xFF) {
+        TIMSK4 = 1 << TOIE4;
+    } else {
+        OCR4A = compare_of(brightness, kClockTop);
+        TIMSK4 = 1 << TOIE4 | 1 << OCIE4A;
+    }
 }
 
 bool button_closed() {

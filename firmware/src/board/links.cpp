@@ -1,5 +1,7 @@
 #include "board/links.h"
 
+#include <avr/io.h>
+
 #include "board/gpio.h"
 #include "board/ring.h"
 #include "board/south_uart.h"
@@ -19,11 +21,6 @@ constexpr uint8_t kByteBits = 10; // start, eight data, stop
 static_assert(us_of_bits(kByteBits*(QUARTER_BYTES - 1), kRowBaud) >= kReadEveryUs, "a USART's queue");
 static_assert(us_of_bits(sizeof(Page) - 1, kLinkBaud) >= kReadEveryUs, "the south link's ring of edges");
 
-// East and west have a USART at both ends. North is connected to the software UART of the tile above.
-constexpr uint32_t baud_of(Side side) {
-    return side == Side::East || side == Side::West ? kRowBaud : kLinkBaud;
-}
-
 uint8_t usart_of(Side side) {
     return kSideUsart[index_of(side)];
 }
@@ -36,9 +33,13 @@ void links_begin() {
             south_begin();
         } else {
             pull_up(kSideRx[i]);
-            usart_begin(kSideUsart[i], baud_of(side_at(i)));
+            link_begin(side_at(i), baud_of(side_at(i)));
         }
     }
+}
+
+void link_begin(Side side, uint32_t baud) {
+    usart_begin(usart_of(side), baud);
 }
 
 bool link_read(Side side, uint8_t* byte) {
@@ -55,6 +56,21 @@ void link_write(Side side, const uint8_t* bytes, uint8_t size) {
     } else {
         usart_write(usart_of(side), bytes, size);
     }
+}
+
+uint16_t link_framing_errors(Side side) {
+    return side == Side::South ? south_framing_errors() : usart_framing_errors(usart_of(side));
+}
+
+uint8_t low_lines() {
+    static_assert(kSideRx[0].port == 'H' && kSideRx[1].port == 'D' && kSideRx[3].port == 'J',
+                  "PINH, PIND, PINJ");
+    uint8_t low = 0;
+    low |= PINH & mask_of(kSideRx[0]) ? 0 : 1 << 0;
+    low |= PIND & mask_of(kSideRx[1]) ? 0 : 1 << 1;
+    low |= PINK & mask_of(kSouthRx) ? 0 : 1 << 2;
+    low |= PINJ & mask_of(kSideRx[3]) ? 0 : 1 << 3;
+    return low;
 }
 
 uint16_t link_overruns(Side side) {

@@ -180,5 +180,9 @@ uint16_t south_overruns() {
     return overruns;
 }
 
+uint16_t south_framing_errors() {
+    return receiver.framing_errors();
+}
+
 } // namespace board
 } // namespace tilenca

@@ -27,6 +27,7 @@ QuarterRing tilenca_received[4];
 QuarterRing tilenca_sending[4];
 HostRing tilenca_host_sending;
 volatile uint16_t tilenca_usart_overruns[4];
+volatile uint16_t tilenca_usart_framing_errors[4];
 }
 
 namespace {
@@ -78,12 +79,24 @@ bool usart_read(uint8_t number, uint8_t* byte) {
     return true;
 }
 
-uint16_t usart_overruns(uint8_t number) {
+namespace {
+
+uint16_t read_whole(const volatile uint16_t& counter) {
     uint16_t count;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        count = tilenca_usart_overruns[number];
+        count = counter;
     }
     return count;
+}
+
+} // namespace
+
+uint16_t usart_overruns(uint8_t number) {
+    return read_whole(tilenca_usart_overruns[number]);
+}
+
+uint16_t usart_framing_errors(uint8_t number) {
+    return read_whole(tilenca_usart_framing_errors[number]);
 }
 
 namespace {

@@ -30,9 +30,7 @@ uint8_t lamps_of(Step step) {
 }
 
 void light(Step step, uint8_t lamp) {
-    for (uint8_t i = 0; i < kSides; ++i) {
-        board::show_led(i, step == Step::Leds && i == lamp);
-    }
+    board::show_leds(step == Step::Leds ? static_cast<uint8_t>(1 << lamp) : 0);
     const bool colours = step == Step::Colours;
     board::show_colour(colours && lamp == 0 ? kDuty : 0, colours && lamp == 1 ? kDuty : 0,
                        colours && lamp == 2 ? kDuty : 0);

@@ -3,14 +3,17 @@
 #include <Arduino.h>
 
 #include "app/button.h"
+#include "board/boot.h"
 #include "board/chip.h"
 #include "board/display.h"
 #include "board/gpio.h"
 #include "board/links.h"
 #include "board/pins.h"
+#include "board/supply.h"
 #include "board/usart.h"
 #include "board_test/lamps.h"
 #include "board_test/say.h"
+#include "board_test/self_test.h"
 #include "board_test/side_check.h"
 
 using namespace tilenca;
@@ -30,6 +33,7 @@ uint8_t lamp = 0; // which of a step's lamps is lit
 Button button;
 SideCheck checks[kSides] = {SideCheck(Side::North), SideCheck(Side::East), SideCheck(Side::South),
                             SideCheck(Side::West)};
+SelfTest self_test(checks);
 
 PGM_P text_of(Verdict verdict) {
     switch (verdict) {
@@ -80,7 +84,7 @@ void say_side(uint8_t i) {
 
 void say_help() {
     say(PSTR("board test: press the button for the next step, or send d display, l LEDs, c colours, s sides, "
-             "b button, ? this"));
+             "b button, t self-test, w watchdog, ? this"));
     say_end();
 }
 
@@ -91,13 +95,15 @@ void say_button() {
 
 void show_sides() {
     uint8_t good = 0;
+    uint8_t leds = 0;
     bool failed = false;
     for (uint8_t i = 0; i < kSides; ++i) {
         const Verdict verdict = checks[i].verdict();
-        board::show_led(i, is_good(verdict));
+        leds |= is_good(verdict) << i;
         good += is_good(verdict);
         failed |= !is_good(verdict) && verdict != Verdict::Waiting;
     }
+    board::show_leds(leds);
     board::show_segments(kDigits[good]);
     board::show_colour(failed ? kDuty : 0, good == kSides ? kDuty : 0, 0);
 }
@@ -116,10 +122,26 @@ void begin_step(Step which, uint32_t now_ms) {
 }
 
 void go_on(uint32_t now_ms) {
+    if (self_test.running()) {
+        self_test.turn(now_ms);
+        if (!self_test.running()) {
+            begin_step(step, now_ms); // its lamps again
+        }
+        return;
+    }
     if (step != Step::Sides && now_ms - lamp_since_ms >= kLampMs) {
         lamp_since_ms += kLampMs;
         lamp = static_cast<uint8_t>((lamp + 1) % lamps_of(step));
         light(step, lamp);
+    }
+}
+
+// The watchdog starts the program again, and setup() says that it has.
+void hang() {
+    say(PSTR("watchdog: hangs now; if nothing follows within a second, it does not work"));
+    say_end();
+    board::watchdog_begin();
+    for (;;) {
     }
 }
 
@@ -128,6 +150,12 @@ void obey(char letter, uint32_t now_ms) {
         if (letter == kLetters[i]) {
             begin_step(static_cast<Step>(i), now_ms);
         }
+    }
+    if (letter == 't' && !self_test.running()) {
+        self_test.begin(now_ms);
+    }
+    if (letter == 'w') {
+        hang();
     }
     if (letter == 'b') {
         say_button();
@@ -159,7 +187,7 @@ void check_sides(uint32_t now_ms) {
     for (uint8_t i = 0; i < kSides; ++i) {
         const Side side = side_at(i);
         for (uint8_t byte; board::link_read(side, &byte);) {
-            checks[i].receive(byte);
+            checks[i].receive(byte, now_ms);
         }
         checks[i].look(board::is_high(board::kSideRx[i]));
         if (send && board::link_idle(side)) {
@@ -167,7 +195,7 @@ void check_sides(uint32_t now_ms) {
             checks[i].write_packet(packet);
             board::link_write(side, packet, sizeof packet);
         }
-        if (judge && checks[i].judge() && step == Step::Sides) {
+        if (judge && checks[i].judge() && step == Step::Sides && !self_test.running()) {
             say_side(i);
             show_sides();
         }
@@ -181,6 +209,11 @@ void setup() {
     board::display_begin(); // before the links' interrupts use the same ports
     board::links_begin();
     board::usart_begin(board::kHostUsart, kHostBaud);
+    board::supply_begin();
+    if (board::reset_cause() & board::kWatchdogReset) {
+        say(PSTR("watchdog: pass, it has started the program again"));
+        say_end();
+    }
     say_help();
     if (board::button_closed()) {
         say(PSTR("button: FAIL, closed without being pressed, unless somebody does "));

@@ -28,18 +28,26 @@ void SideCheck::write_packet(uint8_t (&packet)[kPacketSize]) {
     packet[7] = static_cast<uint8_t>(crc >> 8);
 }
 
-void SideCheck::receive(uint8_t byte) {
+void SideCheck::receive(uint8_t byte, uint32_t now_ms) {
     memmove(window_, window_ + 1, kPacketSize - 1);
     window_[kPacketSize - 1] = byte;
     const uint16_t crc = static_cast<uint16_t>(window_[6] | static_cast<uint16_t>(window_[7]) << 8);
     const Side from = side_at(window_[1] & kSideMask);
     const bool fits = from == side_ || from == opposite(side_);
     if (window_[0] == kMark && fits && crc == crc16(window_, kChecked)) {
-        accept(window_[1], window_[2]);
+        accept(window_[1], window_[2], now_ms);
     }
 }
 
-void SideCheck::accept(uint8_t from, uint8_t sequence) {
+void SideCheck::accept(uint8_t from, uint8_t sequence, uint32_t now_ms) {
+    if (!comparing_) {
+        comparing_ = true;
+        began_ms_ = now_ms;
+        packets_ = 0;
+    } else {
+        packets_ += static_cast<uint8_t>(sequence - sequence_in_);
+    }
+    last_ms_ = now_ms;
     if (in_sequence_) {
         missed_ = static_cast<uint8_t>(missed_ + static_cast<uint8_t>(sequence - sequence_in_ - 1));
     }
@@ -63,7 +71,21 @@ Verdict SideCheck::found() const {
     return heard_us_ ? Verdict::Neighbour : Verdict::OneWay;
 }
 
+// The main loop sees a packet up to a millisecond late: of two seconds, half a thousandth.
+void SideCheck::compare_clocks() {
+    if (received_ == 0) {
+        comparing_ = knows_clock_ = false;
+    } else if (packets_ >= kComparedPackets) {
+        const int32_t theirs_ms = static_cast<int32_t>(packets_) * kPacketMs;
+        const int32_t ours_ms = static_cast<int32_t>(last_ms_ - began_ms_);
+        slower_permille_ = static_cast<int16_t>((ours_ms - theirs_ms) * 1000 / theirs_ms);
+        knows_clock_ = true;
+        comparing_ = false;
+    }
+}
+
 bool SideCheck::judge() {
+    compare_clocks();
     const Verdict before = verdict_;
     verdict_ = found();
     lost_ = missed_;

@@ -25,12 +25,17 @@ from tilenca.fleet.boards import (
     tell_models,
 )
 from tilenca.fleet.discover import Learnt, learn
-from tilenca.fleet.identify import Answer, ask_all
+from tilenca.fleet.identify import BOARD_S, Answer, ask_all
 from tilenca.fleet.ports import natural_key
+from tilenca.fleet.side_hints import SUPPLY_REMEDY, line_hints
 from tilenca.fleet.tiles_file import DEFAULT, Place, read_tiles, tile_count, write_tiles
 from tilenca.fleet.tiles_update import update
+from tilenca.protocol.constants import LEAST_SUPPLY_MV
+from tilenca.protocol.sentences import BoardSentence, ChipSentence
 from tilenca.views.table import table
 
+MEGA_FUSES = 0xFF, 0xD8  # low: the resonator; high: the boot section of 8 KiB starts first
+MEGA_EXTENDED_FUSES = 0xFD, 0xFC  # brown-out at 2.7 V, or at 4.3 V
 HEADER = ("PORT", "TILE", "PLACE", "USB ID", "BOARD", "FIRMWARE", "WHAT")
 
 
@@ -73,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
         present = [replace(board, place=places.get(board.name)) for board in present]
         found = Found([], find_boards([], args.tiles).missing)
     elif args.ask:
-        answers = ask_all([board.port.name for board in present], "tilenca devices")
+        answers = ask_all([board.port.name for board in present], "tilenca devices", board_s=BOARD_S)
         for board in present:
             tell_contradiction(board.port.name, board.tile, answers[board.port.name].hello)
         tell_models({name: answer.hello for name, answer in answers.items() if answer.hello})
@@ -170,6 +175,8 @@ def as_json(board: Board, answer: Answer | None = None) -> dict[str, Any]:
         "about": port.about,
         "firmware_id": f"{hello.firmware_id:08X}" if hello else None,
         "model_id": f"{hello.model_id:04X}" if hello else None,
+        "fuses": _fuses(answer.chip) if answer and answer.chip else None,
+        "supply_mv": answer.board.supply_mv if answer and answer.board else None,
         "error": answer.problem or None if answer else None,
     }
 
@@ -179,8 +186,33 @@ def _row(board: Board, answer: Answer | None) -> list[str]:
     ids = "-" if port.vid is None or port.pid is None else f"{port.vid:04x}:{port.pid:04x}"
     tile = board.tile or (hello.tile if hello else None) or None
     firmware = f"{hello.firmware_id:08X}" if hello else "-"
-    about = "; ".join(filter(None, (port.about, answer.problem if answer else ""))) or "-"
+    facts = (
+        [port.about, answer.problem, *_board_facts(answer.board), *_chip_facts(answer.chip)]
+        if answer
+        else [port.about]
+    )
+    about = "; ".join(filter(None, facts)) or "-"
     return [port.name, _text(tile), _where(board.place), ids, board.name, firmware, about]
+
+
+def _board_facts(board: BoardSentence | None) -> list[str]:
+    """The supply, and lines at which something is wrong, each with what to do."""
+    if board is None:
+        return []
+    low = f": {SUPPLY_REMEDY}" if board.supply_mv and board.supply_mv < LEAST_SUPPLY_MV else ""
+    supply = [] if board.supply_mv is None else [f"{board.supply_mv / 1000:.1f} V{low}"]
+    return [*supply, *(f"side {side}: {hint.text}" for side, hint in line_hints(board, None).items())]
+
+
+def _fuses(chip: ChipSentence) -> str:
+    return f"{chip.low:02X} {chip.high:02X} {chip.extended:02X} {chip.lock:02X}"
+
+
+def _chip_facts(chip: ChipSentence | None) -> list[str]:
+    """The fuses, if they are not a Mega's."""
+    if chip is None or ((chip.low, chip.high) == MEGA_FUSES and chip.extended in MEGA_EXTENDED_FUSES):
+        return []
+    return [f"fuses {_fuses(chip)[:-3]}, and a Mega has FF D8 FD: set them with a programmer"]
 
 
 def _text(value: object) -> str:

@@ -139,7 +139,7 @@ def _display(
     if args.json:
         return JsonLines(start_s)
     if args.log:
-        return NewsLines(start_s, fleet)
+        return NewsLines(start_s, fleet, grid)
     console = Console()
     if not console.is_terminal or console.is_dumb_terminal:
         return EventLines(start_s)

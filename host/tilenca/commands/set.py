@@ -20,7 +20,7 @@ from tilenca.views.table import table
 
 USER = "tilenca set"
 HEADER = ("PORT", "TILE", "RESULT", "ID", "PERIOD", "UPDATES", "BRIGHTNESS", "WHY")
-# What of a HELLO each setting is.
+# What of a HELLO each setting is; a HELLO does not tell `leds`, and the tile's acknowledgement is enough.
 FIELDS = {"id": "tile", "period": "period_ms", "updates": "updates", "brightness": "brightness"}
 
 
@@ -148,7 +148,7 @@ def _set(reader: PortReader, rows: dict[str, SettingRow], name: str, value: int 
         row.hello, row.error = answer.hello or row.hello, answer.problem or None
         if answer.hello is None:
             continue
-        if name != "preset" and getattr(answer.hello, FIELDS[name]) != value:
+        if name in FIELDS and getattr(answer.hello, FIELDS[name]) != value:
             row.error = f"acknowledged, but {name} is {getattr(answer.hello, FIELDS[name])}"
             continue
         row.result = "set"

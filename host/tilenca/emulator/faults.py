@@ -11,6 +11,7 @@ KIND[=VALUE][@WHERE][:FROM[-TO]], times in seconds:
     reset@7:2           tile 7 is reset at 2 s
     drift=20@7          tile 7's clock error grows by 20 ppm a second; without a tile, each by up to so much
     adc=2               conversions are off by 2, root mean square
+    supply=4.3@7:2-3    tile 7 has 4.3 V from 2 s to 3 s, and 5 V otherwise
 """
 
 import random
@@ -27,7 +28,8 @@ from tilenca.emulator.array import Array, Link, LinkFault
 
 EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2"
 LINK_KINDS = {"loss": 1.0, "flip": 1.0, "delay": 1000.0}  # with the most each can be
-TILE_KINDS = {"drift": 10_000.0, "adc": 100.0}
+TILE_KINDS = {"drift": 10_000.0, "adc": 100.0, "supply": 5.5}
+LEAST_V, USUAL_V = 1.8, 5.0
 MOMENT_KINDS = ("cut", "off", "remove", "reset")
 KINDS = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
 SHAPE = re.compile(r"([a-z]+)(?:=([^@:]+))?(?:@([^:]+))?(?::([^-]+)(?:-(.+))?)?")
@@ -94,6 +96,8 @@ def parse(text: str) -> FaultSpec:
     value = 0.0 if value_text is None else _number(text, value_text, "number")
     if most is not None and value > most:
         raise _complaint(text, f"{kind} is 0 to {most:g}")
+    if kind == "supply" and value < LEAST_V:
+        raise _complaint(text, f"supply is {LEAST_V:g} to {most:g} V")
     from_s = 0.0 if from_text is None else _number(text, from_text, "time in seconds")
     to_s = None if to_text is None else _number(text, to_text, "time in seconds")
     if to_s is not None and (to_s <= from_s or kind in ("remove", "reset", "adc", "drift")):
@@ -172,6 +176,8 @@ class Faults:
         else:
             for tile in self._tiles(spec):
                 self._plan(spec.from_s, self._action(spec, tile))
+                if spec.to_s is not None:  # of these, only a supply has an end
+                    self._plan(spec.to_s, partial(self.array[tile].set_supply, USUAL_V))
 
     def _plan(self, time_s: float, action: Callable[[], None]) -> None:
         insort(self._due, (time_s, len(self._due), action), key=lambda due: due[:2])
@@ -193,6 +199,8 @@ class Faults:
             return lambda: self.array.remove_tile(tile)
         if spec.kind == "adc":
             return lambda: self.array[tile].set_adc_noise(spec.value, self.seed)
+        if spec.kind == "supply":
+            return lambda: self.array[tile].set_supply(spec.value)
         rate = spec.value
         if not spec.where:
             rate *= random.Random(f"{self.seed} drift {tile}").uniform(-1, 1)

@@ -39,7 +39,7 @@ class EmulatedTile:
 
     @property
     def leds(self) -> tuple[bool, bool, bool, bool]:
-        """The four debug LEDs, in the order N E S W."""
+        """The four debug LEDs as eyes see them: those lit within the last 20 ms, in the order N E S W."""
         mask = self._call("tile_leds")
         return bool(mask & 1), bool(mask & 2), bool(mask & 4), bool(mask & 8)
 
@@ -171,6 +171,13 @@ class EmulatedTile:
     def set_analog(self, channel: int, value: int) -> None:
         """What analog input A0 to A15 converts to, 0..1023."""
         self._call("tile_set_analog", channel, value)
+
+    def set_supply(self, volts: float) -> None:
+        """The supply voltage, 1.8 to 5.5 V, as the ADC sees it beside the bandgap's 1.1 V.
+
+        The chip runs on at any; `reset(ResetCause.BROWN_OUT)` is what its brown-out detector does.
+        """
+        self._call("tile_set_supply", volts)
 
     def set_adc_noise(self, deviation: float, seed: int = 0) -> None:
         """Conversions are off by a normal deviate, in units of the result's lowest bit."""

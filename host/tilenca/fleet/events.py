@@ -4,12 +4,15 @@ import time
 from dataclasses import dataclass
 
 from tilenca.base.sides import SIDES
+from tilenca.fleet.grid import Grid
 from tilenca.fleet.link_health import FAILING, WELL
+from tilenca.fleet.side_hints import SUPPLY_REMEDY, SideHint, line_hints, silence_hints
 from tilenca.fleet.state import Event, Fleet, PortNews, TileView
 from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.describe import printable, words
 from tilenca.protocol.sentences import (
     AckSentence,
+    BoardSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -18,6 +21,8 @@ from tilenca.protocol.sentences import (
     TileSentence,
 )
 
+# Tiles that have just started do not hear each other yet.
+SILENCE_LOOK_S, SILENCE_LOOKS = 1.0, 3
 # The same as for a whole fleet: see `tell_models`.
 REMEDY = "flash the one that differs from most (tilenca flash)"
 
@@ -40,10 +45,15 @@ def news_line(news: News, port: str | None = None) -> str:
 
 
 class Reporter:
-    """Watches a fleet and reports the changes that each event brings."""
+    """Watches a fleet and reports the changes that each event brings.
 
-    def __init__(self, fleet: Fleet) -> None:
+    With a grid it also tells of tiles that lie side by side and do not hear each other.
+    """
+
+    def __init__(self, fleet: Fleet, grid: Grid | None = None) -> None:
         self._fleet = fleet
+        self._silence = SilenceWatch(fleet, grid) if grid else None
+        self._hinted: dict[tuple[str, str], SideHint] = {}
         self._label: dict[str, str] = {}
         self._other: dict[str, int] = {}  # the protocol of another version that was told
         self._links: dict[str, str] = {}
@@ -54,9 +64,10 @@ class Reporter:
     def take(self, event: Event) -> list[News]:
         """The news of an event that the fleet has just taken."""
         view = self._fleet.tiles[event.port]
-        return [
+        told = [
             News(event.time_s, event.port, view.tile_id, text, bad) for text, bad in self._tell(event, view)
         ]
+        return told + (self._silence.look(event.time_s) if self._silence else [])
 
     def _tell(self, event: Event, view: TileView) -> list[tuple[str, bool]]:
         if isinstance(event, PortNews):
@@ -83,6 +94,10 @@ class Reporter:
                 ]
             case OtherVersionSentence() as other:
                 return self._version_news(event.port, other)
+            case BoardSentence() as board:
+                return self._line_news(event.port, board, view)
+            case ErrorSentence(_, _, "SUPPLY", text):
+                return [(f"SUPPLY {text}: {SUPPLY_REMEDY}", True)]
             case ErrorSentence() | NakSentence() as complaint:
                 return [(words(complaint), True)]
             case AckSentence() as done:
@@ -119,6 +134,19 @@ class Reporter:
             return [(f"a tile with another model is on {link.side}: {REMEDY}", True)]
         return [(f"no other model is on {link.side} any more", False)]
 
+    def _line_news(self, port: str, board: BoardSentence, view: TileView) -> list[tuple[str, bool]]:
+        hints = line_hints(board, view.board_before)
+        news = []
+        for side in SIDES:
+            before, now = self._hinted.get((port, side)), hints.get(side)
+            if now is not None and now is not before:
+                self._hinted[port, side] = now
+                news.append((f"side {side}: {now.text}", True))
+            elif now is None and before is not None:
+                del self._hinted[port, side]
+                news.append((f"side {side}: not so any more ({before.fact})", False))
+        return news
+
     def _health_news(self, port: str, link: LinkSentence, view: TileView) -> list[tuple[str, bool]]:
         health, key = view.health.get(link.side), (port, link.side)
         if health is None:
@@ -138,6 +166,34 @@ class Reporter:
             self._failing.discard(key)
             return [(f"link {link.side} is well again", False)]
         return []
+
+
+class SilenceWatch:
+    """Finds tiles that lie side by side and do not hear each other, and tells it once."""
+
+    def __init__(self, fleet: Fleet, grid: Grid) -> None:
+        self._fleet, self._grid = fleet, grid
+        self._next_s = 0.0
+        self._seen: dict[str, tuple[str, int]] = {}  # per port: the text, and how often in succession
+
+    def look(self, now_s: float) -> list[News]:
+        """The news, if it is time to look again."""
+        if self._next_s - SILENCE_LOOK_S <= now_s < self._next_s:  # else also where a replay went back
+            return []
+        self._next_s = now_s + SILENCE_LOOK_S
+        seen, news = {}, []
+        for cell in self._grid.cells(self._fleet, now_s).values():
+            view = None if cell.port is None else self._fleet.tiles.get(cell.port)
+            hints = silence_hints(view, cell.unheard) if view else {}
+            if cell.port is None or not hints:
+                continue
+            text = f"{' '.join(hints)}: {next(iter(hints.values())).text}"
+            before, count = self._seen.get(cell.port, ("", 0))
+            seen[cell.port] = text, count + 1 if before == text else 1
+            if seen[cell.port][1] == SILENCE_LOOKS:
+                news.append(News(now_s, cell.port, cell.tile, f"does not hear its neighbour on {text}", True))
+        self._seen = seen
+        return news
 
 
 def clock_text(time_s: float) -> str:

@@ -53,6 +53,11 @@ class Cell:
     marks: Mapping[str, Mark] = field(default_factory=dict)
     port: str | None = None
 
+    @property
+    def unheard(self) -> list[str]:
+        """The sides at which a tile lies that speaks, and is not heard."""
+        return [side for side, mark in self.marks.items() if mark is Mark.DEAD]
+
 
 def patience_s(view: TileView) -> float:
     """How long a tile may say nothing."""

@@ -2,13 +2,13 @@
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tilenca.fleet.reader import PortReader
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.board_test import BOARD_TEST
-from tilenca.protocol.commands import ask_command
-from tilenca.protocol.sentences import HelloSentence, OtherVersionSentence
+from tilenca.protocol.commands import ask_command, chip_command
+from tilenca.protocol.sentences import BoardSentence, ChipSentence, HelloSentence, OtherVersionSentence
 
 # After a reset a tile greets by itself as soon as its bootloader stops waiting. Until then the bootloader
 # takes any byte for the beginning of a command and waits for more. So a question goes only to a tile that has
@@ -20,16 +20,20 @@ STALE_S = 0.3
 AGAIN_S = 1.0
 PATIENCE_S = 7.0
 TICK_S = 0.05
+# A tile tells what it measures every second; one of an older firmware never does.
+BOARD_S = 1.3
 
 SILENT = "says nothing"
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A tile's greeting, or the `problem` that prevented one."""
+    """A tile's greeting, or the `problem` that prevented one; `board` and `chip` if awaited."""
 
     hello: HelloSentence | None = None
     problem: str = ""
+    board: BoardSentence | None = None
+    chip: ChipSentence | None = None
 
     @property
     def firmware_id(self) -> int | None:
@@ -40,8 +44,11 @@ class Answer:
 class _Asked:
     """The questions to one tile: `ask_s` is the time of the next one, `end_s` the time to give up."""
 
-    def __init__(self, patience_s: float) -> None:
+    def __init__(self, patience_s: float, board_s: float) -> None:
         self.answer: Answer | None = None
+        self.wait_s = 0.0  # until then, more may come after the answer
+        self.asks_chip = False  # it has greeted, and its chip is still to be asked for
+        self._board_s = board_s
         self.ask_s = self.end_s = float("inf")
         self._fresh_s = 0.0  # earlier bytes may be from before a reset
         self._is_asked = False
@@ -64,7 +71,14 @@ class _Asked:
             else:
                 self.answer = Answer(problem=event.reason.removesuffix("; waiting for it"))
         elif isinstance(event.sentence, HelloSentence):
-            self.answer = Answer(event.sentence)
+            if self.answer is None:
+                self.answer = Answer(event.sentence)
+                self.wait_s = now_s + self._board_s
+                self.asks_chip = self._board_s > 0
+        elif isinstance(event.sentence, BoardSentence) and self.answer and self.answer.hello:
+            self.answer, self.wait_s = replace(self.answer, board=event.sentence), now_s
+        elif isinstance(event.sentence, ChipSentence) and self.answer:
+            self.answer = replace(self.answer, chip=event.sentence)
         elif isinstance(event.sentence, OtherVersionSentence):
             self.answer = Answer(problem=f"speaks protocol {event.sentence.version}")
         elif now_s < self._fresh_s:
@@ -81,6 +95,7 @@ def ask_all(
     report: Callable[[str, Answer], None] = lambda name, answer: None,
     patience_s: float = PATIENCE_S,
     clock: Callable[[], float] = time.monotonic,
+    board_s: float = 0.0,
 ) -> dict[str, Answer]:
     """Asks the tiles behind the ports; opening a port may reset its tile.
 
@@ -90,12 +105,13 @@ def ask_all(
         report: called with each answer as it comes.
         patience_s: how long a tile may say nothing.
         clock: seconds that only grow.
+        board_s: how long to wait, after its greeting, for what a tile measures on its board, and its fuses.
 
     Returns:
         An answer for each port, in the order of `names`.
     """
     with PortReader(names, clock=clock, user=user) as reader:
-        return ask(reader, names, report, patience_s=patience_s, clock=clock)
+        return ask(reader, names, report, patience_s=patience_s, clock=clock, board_s=board_s)
 
 
 def ask(
@@ -105,9 +121,10 @@ def ask(
     hear: Callable[[Event], None] = lambda event: None,
     patience_s: float = PATIENCE_S,
     clock: Callable[[], float] = time.monotonic,
+    board_s: float = 0.0,
 ) -> dict[str, Answer]:
     """As `ask_all`, with ports that stay open; `hear` gets every event meanwhile."""
-    asked = {name: _Asked(patience_s) for name in names}
+    asked = {name: _Asked(patience_s, board_s) for name in names}
     for name in asked.keys() & set(reader.open):
         asked[name].begin(clock(), clock())
     waiting = set(asked)
@@ -121,6 +138,11 @@ def ask(
             tile = asked[name]
             if tile.answer is None and now_s >= tile.end_s:
                 tile.answer = Answer(problem=SILENT)
+            if tile.asks_chip:
+                tile.asks_chip = False
+                reader.write(name, chip_command())
+            if tile.answer is not None and now_s < tile.wait_s:
+                continue
             if tile.answer is not None:
                 waiting.discard(name)
                 report(name, tile.answer)

@@ -6,6 +6,7 @@ from typing import Any, TypeAlias
 from tilenca.fleet.link_health import LinkHealth
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
+    BoardSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -64,6 +65,7 @@ class TileView:
         links: the last report of each side, by letter.
         health: the recent quality of each side's link, by letter.
         time: its last report of its time and memory.
+        board: what it measures on its board, and `board_before` the report before that, since its HELLO.
         error: the last error that it reported since its HELLO.
         other_version: its protocol version, if it is not ours.
         board_test: whether its last line was the board test's.
@@ -82,6 +84,8 @@ class TileView:
     links: dict[str, LinkSentence] = field(default_factory=dict)
     health: dict[str, LinkHealth] = field(default_factory=dict)
     time: TimeSentence | None = None
+    board: BoardSentence | None = None
+    board_before: BoardSentence | None = None
     error: ErrorSentence | None = None
     other_version: int | None = None
     tile_id: int | None = None
@@ -112,7 +116,7 @@ class TileView:
             case HelloSentence():
                 # The tile may have just started: earlier reports no longer hold.
                 self.hello, self.tile, self.links, self.health = sentence, None, {}, {}
-                self.time = self.error = self.other_version = None
+                self.time = self.error = self.other_version = self.board = self.board_before = None
             case TileSentence():
                 self.tile = sentence
             case LinkSentence():
@@ -120,6 +124,8 @@ class TileView:
                 self.health.setdefault(sentence.side, LinkHealth()).take(sentence)
             case TimeSentence():
                 self.time = sentence
+            case BoardSentence():
+                self.board_before, self.board = self.board, sentence
             case ErrorSentence():
                 self.error = sentence
             case OtherVersionSentence():

@@ -5,7 +5,10 @@ import re
 BOARD_TEST = "runs the board test"
 
 # How each line of firmware/src/board_test begins; the rest is plain text.
-_LINE = re.compile(rb"(?:board test|button|colours|display|LEDs|side [NESW]): [ -~]+")
+_LINE = re.compile(
+    rb"(?:board test|self-test|button|colours|display|LEDs|side [NESW]|supply|fuses|bootloader|EEPROM"
+    rb"|link LEDs|pins|rate [NEW]|clock|watchdog): [ -~]+"
+)
 
 
 def board_test_text(raw: bytes) -> str | None:

@@ -9,6 +9,11 @@ def ask_command() -> bytes:
     return framed("ASK")
 
 
+def chip_command() -> bytes:
+    """Asks a tile for its fuse and lock bytes."""
+    return framed("CHIP")
+
+
 def set_command(name: str, value: int | str) -> bytes:
     """Tells a tile to keep a setting: `id`, `period` (ms), `updates`, `brightness`, or `preset`.
 

@@ -19,6 +19,7 @@ SILENT_PERIODS = 6
 # Telemetry (section 3).
 HOST_BAUD = 115200
 MAX_SENTENCE = 200
+LEAST_SUPPLY_MV = 4500
 # Commands (section 6).
 MAX_COMMAND = 64
 MAX_BLINK_S = 60
@@ -34,5 +35,6 @@ SETTING_RANGES = {
     "period": (MIN_PERIOD_MS, MAX_PERIOD_MS),
     "updates": (0, 0xFFFF),
     "brightness": (0, MAX_BRIGHTNESS),
+    "leds": (0, 1),
 }
 PRESETS = ("paper", "default")

@@ -2,8 +2,11 @@
 
 import re
 
+from tilenca.base.sides import SIDES
 from tilenca.protocol.sentences import (
     AckSentence,
+    BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -62,6 +65,10 @@ def words(sentence: Sentence) -> str:
         case TimeSentence(_, _, compute_us, awake_permille, gap_us, stack_unused, dropped):
             times = f"computes {compute_us} us awake {awake_permille / 10:.1f} % longest turn {gap_us} us"
             return f"{times} stack {stack_unused} bytes unused {dropped} sentences dropped"
+        case ChipSentence(_, low, high, extended, lock):
+            return f"fuses low {low:02X} high {high:02X} extended {extended:02X} lock {lock:02X}"
+        case BoardSentence():
+            return _board_words(sentence)
         case ErrorSentence(_, _, code, text):
             return f"{code} {text}"
         case AckSentence(_, command, fields):
@@ -80,6 +87,13 @@ def _hello_words(hello: HelloSentence) -> str:
         f"protocol {hello.version} firmware {hello.firmware_id:08X} {model} {pace} "
         f"reset by {reset_words(hello.reset_cause)}"
     )
+
+
+def _board_words(board: BoardSentence) -> str:
+    supply = "not known" if board.supply_mv is None else f"{board.supply_mv / 1000:.2f} V"
+    errors = " ".join(f"{side} {count}" for side, count in zip(SIDES, board.framing_errors, strict=True))
+    low = " ".join(f"{side} {ms} ms" for side, ms in zip(SIDES, board.low_ms, strict=True))
+    return f"supply {supply} framing errors {errors} low for {low}"
 
 
 def _link_words(link: LinkSentence) -> str:

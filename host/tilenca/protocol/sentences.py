@@ -3,160 +3,42 @@
 No port and no clock. `protocol.commands` has the host's sentences, `protocol.frames` the tiles' frames.
 """
 
-from dataclasses import dataclass
-from typing import TypeAlias
-
+from tilenca.base.sides import SIDES
 from tilenca.protocol import patterns
 from tilenca.protocol.checksums import checksum
 from tilenca.protocol.constants import PROTOCOL_VERSION
-
-
-@dataclass(frozen=True)
-class HelloSentence:
-    """A tile's greeting at boot and on request.
-
-    Attributes:
-        tile: its id; 0: none was set.
-        updates: the number after which it stops; 0: it never stops.
-        reset_cause: MCUSR, as far as the tile knows it.
-        firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
-        brightness: 0..255.
-    """
-
-    version: int
-    tile: int
-    model_id: int
-    channels: int
-    classes: int
-    period_ms: int
-    updates: int
-    reset_cause: int
-    firmware_id: int
-    brightness: int
-
-
-@dataclass(frozen=True)
-class TileSentence:
-    """A tile's state and display; `label` is empty while nothing is shown.
-
-    Attributes:
-        class_index: the class that the tile decided for; None while nothing is shown.
-        margin: how sure it is: the best score less the second best, in units of a message (0..254); None
-            while nothing is shown and where there is only one class.
-        links: `NESW` with `-` for every silent side.
-        state: the state bytes as sent to the neighbours (message + 128), one per channel.
-    """
-
-    tile: int
-    uptime_ms: int
-    updates: int
-    label: str
-    class_index: int | None
-    margin: int | None
-    links: str
-    state: bytes
-
-
-@dataclass(frozen=True)
-class LinkSentence:
-    """The counters of one side's link.
-
-    Attributes:
-        age_ms: of the last good frame; None before the first, as are the next two.
-        overruns: bytes lost because a buffer was full; south: how often edges were lost, or dropped as noise.
-        neighbour: id of the tile that sent the last good frame; 0 if it has none.
-        neighbour_side: the side it left from, `N`, `E`, `S` or `W`.
-    """
-
-    tile: int
-    uptime_ms: int
-    side: str
-    sent: int
-    received: int
-    corrupt: int
-    lost: int
-    foreign: int
-    age_ms: int | None
-    overruns: int
-    neighbour: int | None
-    neighbour_side: str | None
-
-
-@dataclass(frozen=True)
-class TimeSentence:
-    """A tile's use of time and memory.
-
-    Attributes:
-        compute_us: the longest computation of an update since the last such sentence.
-        awake_permille: share of the time since then that the main loop did not sleep.
-        gap_us: the longest time from one turn of the main loop to the next since then.
-        stack_unused: bytes of the stack's room that have never been used.
-        dropped: sentences dropped since boot because the buffer was full.
-    """
-
-    tile: int
-    uptime_ms: int
-    compute_us: int
-    awake_permille: int
-    gap_us: int
-    stack_unused: int
-    dropped: int
-
-
-@dataclass(frozen=True)
-class ErrorSentence:
-    """An error of a tile: a code word, and a text for people."""
-
-    tile: int
-    uptime_ms: int
-    code: str
-    text: str
-
-
-@dataclass(frozen=True)
-class AckSentence:
-    """A command was carried out: its name, and the fields now in force."""
-
-    tile: int
-    command: str
-    fields: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class NakSentence:
-    """A command was not carried out; `command` is empty where the tile could not tell which it was."""
-
-    tile: int
-    reason: str
-    command: str = ""
-
-
-@dataclass(frozen=True)
-class OtherVersionSentence:
-    """A good sentence of a tile whose protocol version is not ours."""
-
-    version: int
-    tile: int
-
-    @property
-    def remedy(self) -> str:
-        """The fact and the remedy."""
-        return (
-            f"speaks protocol {self.version}, these tools speak {PROTOCOL_VERSION}: "
-            "flash it with the firmware that belongs to them (tilenca flash)"
-        )
-
-
-Sentence: TypeAlias = (
-    HelloSentence
-    | TileSentence
-    | LinkSentence
-    | TimeSentence
-    | ErrorSentence
-    | AckSentence
-    | NakSentence
-    | OtherVersionSentence
+from tilenca.protocol.sentence_types import (
+    AckSentence,
+    BoardSentence,
+    ChipSentence,
+    ErrorSentence,
+    HelloSentence,
+    LinkSentence,
+    NakSentence,
+    OtherVersionSentence,
+    Sentence,
+    TileSentence,
+    TimeSentence,
 )
+
+__all__ = [
+    "TYPES",
+    "AckSentence",
+    "BoardSentence",
+    "ChipSentence",
+    "ErrorSentence",
+    "HelloSentence",
+    "LinkSentence",
+    "NakSentence",
+    "OtherVersionSentence",
+    "Sentence",
+    "TileSentence",
+    "TimeSentence",
+    "format_sentence",
+    "framed",
+    "parse_sentence",
+    "type_of",
+]
 
 
 def framed(text: str) -> bytes:
@@ -186,6 +68,10 @@ def format_sentence(sentence: Sentence) -> bytes:
             fields = ("LINK", *vars(sentence).values())
         case TimeSentence():
             fields = ("TIME", *vars(sentence).values())
+        case ChipSentence(tile, low, high, extended, lock):
+            fields = ("CHIP", tile, f"{low:02X},{high:02X},{extended:02X},{lock:02X}")
+        case BoardSentence(tile, uptime_ms, supply_mv, framing_errors, low_ms):
+            fields = ("BOARD", tile, uptime_ms, supply_mv, *framing_errors, *low_ms)
         case ErrorSentence(tile, uptime_ms, code, text):
             fields = ("ERROR", tile, uptime_ms, code, text)
         case AckSentence(tile, command, values):
@@ -253,6 +139,23 @@ def _time(text: str) -> Sentence | None:
     return TimeSentence(*map(int, found.groups())) if (found := patterns.TIME.fullmatch(text)) else None
 
 
+def _chip(text: str) -> Sentence | None:
+    if (found := patterns.CHIP.fullmatch(text)) is None:
+        return None
+    tile, *values = found.groups()
+    return ChipSentence(int(tile), *(int(value, 16) for value in values))
+
+
+def _board(text: str) -> Sentence | None:
+    if (found := patterns.BOARD.fullmatch(text)) is None:
+        return None
+    tile, uptime_ms, supply, *sides = found.groups()
+    counts = tuple(map(int, sides))
+    return BoardSentence(
+        int(tile), int(uptime_ms), int(supply) if supply else None, counts[: len(SIDES)], counts[len(SIDES) :]
+    )
+
+
 def _error(text: str) -> Sentence | None:
     found = patterns.ERROR.fullmatch(text)
     return ErrorSentence(int(found[1]), int(found[2]), found[3], found[4]) if found else None
@@ -274,6 +177,8 @@ _PARSERS = {
     "TILE": _tile,
     "LINK": _link,
     "TIME": _time,
+    "CHIP": _chip,
+    "BOARD": _board,
     "ERROR": _error,
     "ACK": _ack,
     "NAK": _nak,
@@ -285,6 +190,8 @@ TYPES = {
     TileSentence: "TILE",
     LinkSentence: "LINK",
     TimeSentence: "TIME",
+    ChipSentence: "CHIP",
+    BoardSentence: "BOARD",
     ErrorSentence: "ERROR",
     AckSentence: "ACK",
     NakSentence: "NAK",

@@ -35,7 +35,7 @@ class LiveView:
         self._console = console
         self._overflow: OverflowMethod = "crop" if console.options.ascii_only else "ellipsis"
         self.footer: Callable[[], str] = str
-        self._reporter = Reporter(fleet)
+        self._reporter = Reporter(fleet, grid)
         self._log: deque[News] = deque(maxlen=LOG_LINES)
         self._counted: deque[tuple[float, int]] = deque(maxlen=2 + round(RATE_S / REDRAW_S))
         self._now_s = self._shown_s = 0.0
@@ -53,7 +53,7 @@ class LiveView:
     def begin_again(self) -> None:
         """Forgets everything shown: the recording starts again."""
         self._fleet.tiles.clear()
-        self._reporter = Reporter(self._fleet)
+        self._reporter = Reporter(self._fleet, self._grid)
         self._log.clear()
         self._counted.clear()
 

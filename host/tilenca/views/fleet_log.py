@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from tilenca.base.stdio import warn
 from tilenca.fleet.events import Reporter, news_line
+from tilenca.fleet.grid import Grid
 from tilenca.fleet.state import Event, Fleet, as_json
 from tilenca.protocol.line_reader import Heard
 from tilenca.views.fleet_table import log_line
@@ -54,9 +55,9 @@ class EventLines(Lines):
 class NewsLines(Lines):
     """Each change as a line on stdout: the log that stands below the picture."""
 
-    def __init__(self, start_s: float, fleet: Fleet) -> None:
+    def __init__(self, start_s: float, fleet: Fleet, grid: Grid) -> None:
         super().__init__(start_s)
-        self._reporter = Reporter(fleet)
+        self._reporter = Reporter(fleet, grid)
 
     def tell(self, event: Event, *, shown: bool) -> None:
         """See `Lines.tell`."""

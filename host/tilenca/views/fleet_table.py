@@ -10,6 +10,7 @@ from rich.text import Text
 from tilenca.fleet.events import clock_text, port_words
 from tilenca.fleet.grid import trouble
 from tilenca.fleet.ports import natural_key
+from tilenca.fleet.side_hints import line_hints
 from tilenca.fleet.state import Event, Fleet, PortNews, TileView
 from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.describe import printable, said
@@ -60,6 +61,7 @@ def cells(view: TileView, now_s: float) -> list[str]:
         note
         or (BOARD_TEST if view.board_test else "silent" if quiet else "")
         or (view.error.code if view.error else "")
+        or _hints(view)
     )
     return [
         view.port,
@@ -74,6 +76,11 @@ def cells(view: TileView, now_s: float) -> list[str]:
         str(view.damaged),
         note,
     ]
+
+
+def _hints(view: TileView) -> str:
+    hints = line_hints(view.board, view.board_before) if view.board else {}
+    return ", ".join(f"{side} {hint.word}" for side, hint in hints.items())
 
 
 def _or_dash(value: object) -> str:

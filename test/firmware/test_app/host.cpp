@@ -71,6 +71,10 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     CHECK(tile.settings().period_ms == 2000);
     CHECK(tile.settings().updates == 30);
     CHECK(answer("SET,brightness,9").find("$ACK,7,SET,brightness,9*") == 0);
+    CHECK(answer("SET,leds,0").find("$ACK,7,SET,leds,0*") == 0);
+    CHECK(tile.settings().leds_off == 1);
+    CHECK(answer("SET,leds,1").find("$ACK,7,SET,leds,1*") == 0);
+    CHECK(tile.settings().leds_off == 0);
     CHECK(answer("SET,id,9") == line_of("answer to a new id"));
     answer("SET,preset,default");
     CHECK(tile.settings().period_ms == kDefaults.period_ms);
@@ -84,8 +88,8 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
 
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
     for (const char* wrong : {"SET,period,9", "SET,period,10001", "SET,id,256", "SET,updates,65536",
-                              "SET,brightness,256", "SET,preset,fast", "SET,preset,", "SET,colour,3",
-                              "SET,id,", "SET,id,-1", "SET,id", "SET,id,1,2", "SET"}) {
+                              "SET,brightness,256", "SET,leds,2", "SET,preset,fast", "SET,preset,",
+                              "SET,colour,3", "SET,id,", "SET,id,-1", "SET,id", "SET,id,1,2", "SET"}) {
         CAPTURE(wrong);
         CHECK(answer(wrong) == line_of("a value out of range"));
     }
@@ -188,6 +192,10 @@ TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its li
     CHECK(appearance_of(tile, false, 0).leds == 0x1);
     CHECK(appearance_of(tile, false, 256).leds == 0x9);
     CHECK(appearance_of(tile, false, 512).leds == 0x1);
+    Settings dark = tile.settings();
+    dark.leds_off = 1;
+    tile.apply(dark);
+    CHECK(appearance_of(tile, false, 256).leds == 0);
 }
 
 TEST_CASE_FIXTURE(Fixture, "brightness scales a colour") {

@@ -26,7 +26,7 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
     uint8_t block[kSettingsSize];
     REQUIRE(bytes.size() == sizeof block);
     memcpy(block, bytes.data(), sizeof block);
-    Settings settings = {99, 9999, 999, 9};
+    Settings settings = {99, 9999, 999, 9, 0};
     if (!parse_settings(block, &settings)) {
         CHECK(settings.tile_id == 99);
         CHECK(settings.period_ms == 9999);
@@ -35,7 +35,8 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
         return "ignored";
     }
     return std::to_string(settings.tile_id) + " " + std::to_string(settings.period_ms) + " " +
-           std::to_string(settings.updates) + " " + std::to_string(settings.brightness);
+           std::to_string(settings.updates) + " " + std::to_string(settings.brightness) +
+           (settings.leds_off ? " 0" : " 1");
 }
 
 } // namespace
@@ -62,7 +63,7 @@ TEST_CASE("writing gives the block of every case that is not ignored") {
         }
         CHECK(is_blank(block) == (std::string(settings_case.name) == "erased"));
     }
-    CHECK(written == 3);
+    CHECK(written == 4);
 }
 
 TEST_CASE("a block with any one bit flipped is ignored") {

@@ -52,7 +52,7 @@ struct Fixture {
 TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
     const Tile tile(model, {7, 2000, 30, 128}, 0);
     Sentence sentence;
-    write_hello(tile, {0x0A, 0x00C0FFEE}, &sentence);
+    write_hello(tile, {0x0A, 0x00C0FFEE, {}}, &sentence);
     CHECK(text_of(sentence) == line_of("hello of tile 7"));
 }
 
@@ -110,8 +110,23 @@ TEST_CASE_FIXTURE(Fixture, "a link tells its counters and its age") {
 TEST_CASE_FIXTURE(Fixture, "a tile tells its times, its stack and what it dropped") {
     const Tile tile(model, {7, 100, 0, 255}, 0);
     Sentence sentence;
-    write_time(tile, {14200, 2048, 163, 5000, {}}, 3, 1000, &sentence);
+    write_time(tile, {14200, 2048, 163, 5000, {}, {}, {}, 0}, 3, 1000, &sentence);
     CHECK(text_of(sentence) == line_of("time"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile tells its fuses") {
+    Sentence sentence;
+    write_chip(Tile(model, {7, 100, 0, 255}, 0), {0, 0, {0xFF, 0xD8, 0xFD, 0xCF}}, &sentence);
+    CHECK(text_of(sentence) == line_of("chip"));
+}
+
+TEST_CASE_FIXTURE(Fixture, "a tile tells its supply, framing errors and lines that stay low") {
+    const Tile tile(model, {7, 100, 0, 255}, 0);
+    Sentence sentence;
+    write_board(tile, {}, 500, &sentence);
+    CHECK(text_of(sentence) == line_of("board whose supply is not known"));
+    write_board(tile, {0, 0, 0, 0, {}, {1, 0, 65535, 12}, {0, 0, 60000, 4294967295}, 4380}, 60500, &sentence);
+    CHECK(text_of(sentence) == line_of("board with a line that is low"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "what is wrong is said in words") {
@@ -120,6 +135,8 @@ TEST_CASE_FIXTURE(Fixture, "what is wrong is said in words") {
     CHECK(text_of(sentence) == line_of("error without an address"));
     write_error(Tile(model, {0, 100, 0, 255}, 0), Error::Watchdog, 0x0A2C, 3, &sentence);
     CHECK(text_of(sentence) == line_of("error with an address"));
+    write_error(Tile(model, {7, 100, 0, 255}, 0), Error::Supply, 4380, 1500, &sentence);
+    CHECK(text_of(sentence) == line_of("error of a low supply"));
 }
 
 TEST_CASE("the longest sentences fit") {
@@ -141,7 +158,12 @@ TEST_CASE("the longest sentences fit") {
     Tile heard(model, {255, 10000, 65535, 255}, 0);
     write_link(heard, Side::West, 65535, 4294967295, &sentence);
     CHECK(sentence.size() <= kMaxSentence);
-    write_time(heard, {4294967295, 4294967295, 1000, 65535, {}}, 4294967295, 4294967295, &sentence);
+    constexpr uint32_t kMost = 4294967295;
+    const Health most = {
+        kMost, kMost, 1000, 65535, {}, {65535, 65535, 65535, 65535}, {kMost, kMost, kMost, kMost}, 65535};
+    write_time(heard, most, kMost, kMost, &sentence);
+    CHECK(sentence.size() <= kMaxSentence);
+    write_board(heard, most, kMost, &sentence);
     CHECK(sentence.size() <= kMaxSentence);
 }
 
@@ -175,7 +197,7 @@ TEST_CASE_FIXTURE(Fixture, "after every period comes a tile sentence, then one l
         telemetry.period_ended(tile);
         names += said_at(now_ms, tile, &telemetry);
     }
-    CHECK(names == "TNTETSTWTN");
+    CHECK(names == "TNTETSTWTNB"); // half a second is over, too
 }
 
 TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when its label changes") {
@@ -201,13 +223,31 @@ TEST_CASE_FIXTURE(Fixture, "a fast tile speaks every 100 ms, and at once when it
 TEST_CASE_FIXTURE(Fixture, "times are told every second by the tile's clock, however late the calls come") {
     const Tile tile(model, {7, 100, 0, 255}, 0);
     Telemetry telemetry;
-    std::vector<uint32_t> told_at;
+    std::vector<uint32_t> told_at, board_at;
     for (uint32_t now_ms = 0; now_ms < 5000; now_ms += 7) {
-        if (said_at(now_ms, tile, &telemetry) == "t") {
+        const std::string said = said_at(now_ms, tile, &telemetry);
+        if (said == "t") {
             told_at.push_back(now_ms);
+        } else if (said == "B") {
+            board_at.push_back(now_ms);
+        } else {
+            CHECK(said == "");
         }
     }
     CHECK(told_at == std::vector<uint32_t>{1001, 2002, 3003, 4004});
+    CHECK(board_at == std::vector<uint32_t>{504, 1505, 2506, 3500, 4501});
+}
+
+TEST_CASE_FIXTURE(Fixture, "a low supply is told with the voltage at which it was first seen") {
+    const Tile tile(model, {7, 100, 0, 255}, 0);
+    Telemetry telemetry;
+    Sentence sentence;
+    telemetry.failed(Error::Supply, 4380);
+    telemetry.failed(Error::Supply, 4100);
+    telemetry.write(tile, {}, 1500, &sentence);
+    CHECK(text_of(sentence) == line_of("error of a low supply"));
+    telemetry.failed(Error::Supply, 4100);
+    CHECK(said_at(1500, tile, &telemetry) == "tB");
 }
 
 TEST_CASE_FIXTURE(Fixture, "an error is said once, before all else") {

@@ -278,3 +278,30 @@ TEST_CASE("what the toggles send is what was to be sent") {
         CHECK(receive(edges, 1000 + size * kByteCycles) == sent);
     }
 }
+
+TEST_CASE("bytes without a stop bit are counted, good ones and glitches are not") {
+    Receiver receiver;
+    CHECK(edge(receiver, stamp_at(1000, false)) == Receiver::kNoByte); // a break
+    CHECK(poll(receiver, count_at(1000 + 2 * kByteCycles)) == Receiver::kNoByte);
+    CHECK(receiver.framing_errors() == 1);
+    CHECK(poll(receiver, count_at(1000 + 3 * kByteCycles)) == Receiver::kNoByte); // and still low
+    CHECK(receiver.framing_errors() == 1);
+    edge(receiver, stamp_at(1000 + 4 * kByteCycles, true));
+    Line line(1000 + 5 * kByteCycles);
+    line.send(0x00);
+    line.send(0xA5);
+    std::vector<uint8_t> bytes;
+    for (const Edge& change : line.edges) {
+        const int16_t byte = edge(receiver, stamp_at(change.cycle, change.level));
+        if (byte != Receiver::kNoByte) {
+            bytes.push_back(static_cast<uint8_t>(byte));
+        }
+    }
+    CHECK(poll(receiver, count_at(line.cycle)) == 0xA5);
+    CHECK(bytes == std::vector<uint8_t>{0x00});
+    const double later = line.cycle + kByteCycles;
+    edge(receiver, stamp_at(later, false)); // a glitch of a tenth of a bit
+    edge(receiver, stamp_at(later + kByteCycles / 100, true));
+    poll(receiver, count_at(later + 2 * kByteCycles));
+    CHECK(receiver.framing_errors() == 1);
+}

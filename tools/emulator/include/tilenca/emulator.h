@@ -195,6 +195,9 @@ TILENCA_API int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char
 // What an analog channel, 0 to 15, converts to: 0 to 1023.
 TILENCA_API int tilenca_tile_set_analog(tilenca_array* array, unsigned tile, unsigned channel,
                                         unsigned value);
+// The supply, 1.8 to 5.5 V, 5 at the start. The ADC and the comparator see it beside the bandgap's 1.1 V; the
+// chip runs on at any.
+TILENCA_API int tilenca_tile_set_supply(tilenca_array* array, unsigned tile, double volts);
 // Conversions are off by a normal deviate, in units of the result's lowest bit.
 TILENCA_API int tilenca_tile_set_adc_noise(tilenca_array* array, unsigned tile, double deviation,
                                            uint64_t seed);

@@ -49,6 +49,15 @@ int tilenca_tile_set_analog(tilenca_array* array, unsigned tile, unsigned channe
     });
 }
 
+int tilenca_tile_set_supply(tilenca_array* array, unsigned tile, double volts) {
+    return attempted([&] {
+        check_range("a supply in volts", volts, 1.8, 5.5);
+        auto& chip = tile_of(array, tile).chip();
+        chip.adc().set_supply(volts);
+        chip.comparator().inputs_changed(chip.cpu().cycle);
+    });
+}
+
 int tilenca_tile_set_adc_noise(tilenca_array* array, unsigned tile, double deviation, uint64_t seed) {
     return attempted([&] {
         check_range("the noise's deviation", deviation, 0.0, 1024.0);

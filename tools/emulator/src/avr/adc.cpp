@@ -14,7 +14,7 @@ constexpr uint8_t kAden = 0x80, kAdsc = 0x40, kAdate = 0x20, kAdif = 0x10, kAdie
 constexpr uint8_t kAdlar = 0x20, kMux5 = 0x08, kTriggerSource = 0x07;
 // Conversion times in halves of an ADC clock (data sheet, table 26-1).
 constexpr unsigned kFirst = 50, kSingle = 26, kTriggered = 27;
-constexpr double kBandgap = 225; // 1.1 V of 5 V
+constexpr double kBandgapV = 1.1;
 
 } // namespace
 
@@ -42,13 +42,17 @@ double Adc::difference(unsigned mux) const {
     return apart * gain / 2;
 }
 
+double Adc::bandgap() const {
+    return kBandgapV / supply_v_ * 1024;
+}
+
 double Adc::selected() const {
     const unsigned mux = (byte(kAdmux) & 31u) | ((byte(kAdcsrb) & kMux5) != 0 ? 32u : 0u);
     if ((mux & 0x18) == 0) { // single-ended: 0..7, and 32..39 for channels 8..15
         return inputs_[(mux & 7) | (mux >> 2 & 8)];
     }
     if (mux == 0x1E) {
-        return kBandgap;
+        return bandgap();
     }
     return mux == 0x1F || mux >= 0x3E ? 0 : difference(mux);
 }
@@ -197,7 +201,8 @@ void Adc::clock_starts(uint64_t, uint64_t stood) {
 }
 
 void Adc::state(Archive& archive) {
-    archive(inputs_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, result_, origin_);
+    archive(inputs_, supply_v_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, result_,
+            origin_);
 }
 
 } // namespace tilenca::avr

@@ -38,6 +38,11 @@ class Adc : public Peripheral {
     // What a channel converts to, 0..1023.
     void set_input(unsigned channel, uint16_t value) { inputs_[channel % 16] = value & 0x3FF; }
     uint16_t input(unsigned channel) const { return inputs_[channel % 16]; }
+    // The supply, which is the reference, too: inputs above are shares of it, and the bandgap's 1.1 V are
+    // not.
+    void set_supply(double volts) { supply_v_ = volts; }
+    // What the bandgap converts to.
+    double bandgap() const;
     // Every conversion is off by a normal deviate of this deviation, in units of the result's lowest bit.
     void set_noise(double deviation, uint64_t seed);
 
@@ -60,6 +65,7 @@ class Adc : public Peripheral {
     void update_requests();
 
     std::array<uint16_t, 16> inputs_{};
+    double supply_v_ = 5;
     double noise_ = 0;
     Random random_;
     bool warm_ = false;       // the first conversion after switching on takes longer

@@ -9,7 +9,6 @@ namespace {
 constexpr uint16_t kAcsr = 0x50, kPrr0 = 0x64, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C;
 constexpr uint8_t kAcd = 0x80, kAcbg = 0x40, kAco = 0x20, kAci = 0x10, kAcie = 0x08, kAcic = 0x04;
 constexpr uint8_t kAcis = 0x03, kAcme = 0x40, kAden = 0x80, kMux5 = 0x08, kPradc = 0x01;
-constexpr uint16_t kBandgap = 225; // 1.1 V of 5 V
 
 } // namespace
 
@@ -25,7 +24,7 @@ bool Comparator::compare() const {
     if ((byte(kAcsr) & kAcd) != 0) {
         return false;
     }
-    const uint16_t positive = (byte(kAcsr) & kAcbg) != 0 ? kBandgap : inputs_[0];
+    const uint16_t positive = (byte(kAcsr) & kAcbg) != 0 ? static_cast<uint16_t>(adc_.bandgap()) : inputs_[0];
     uint16_t negative = inputs_[1];
     const bool has_multiplexer = (byte(kAdcsra) & kAden) == 0 && (byte(kPrr0) & kPradc) == 0;
     if ((byte(kAdcsrb) & kAcme) != 0 && has_multiplexer) {

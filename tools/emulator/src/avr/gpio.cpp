@@ -130,6 +130,9 @@ void Gpio::update(Port& port, uint64_t cycle) {
     const unsigned changed = (before ^ after) | (open ^ port.open);
     port.levels = after;
     port.open = open;
+    for (unsigned fell = before & ~after & port.remembered & port.ddr_before; fell != 0; fell &= fell - 1) {
+        port.fell[static_cast<unsigned>(__builtin_ctz(fell))] = cycle;
+    }
     // What a USART has taken over is announced by it alone.
     for (unsigned told = changed & port.watched_out & ~port.silent; told != 0; told &= told - 1) {
         const auto bit = static_cast<uint8_t>(__builtin_ctz(told));
@@ -238,7 +241,7 @@ void Gpio::state(Archive& archive) {
     for (Port& port : ports_) {
         archive(port.written, port.ddr_before, port.latch_before, port.levels, port.driven, port.held,
                 port.taken, port.silent, port.interrupting, port.watched, port.heard, port.watched_in,
-                port.has_lines, port.inputs_off);
+                port.has_lines, port.inputs_off, port.fell);
         for (unsigned bit = 0; bit < 8; bit++) {
             if ((port.has_lines >> bit & 1) != 0) {
                 if (port.lines[bit] == nullptr) {

@@ -103,6 +103,14 @@ class Gpio final : public Peripheral {
     // What the pin does to its wire.
     Drive drive(PinId pin, uint64_t cycle);
     bool port_bit(PinId pin) const;
+    // From now on it is known when this output was high last.
+    void remember(PinId pin) { ports_[pin.port].remembered |= pin.mask(); }
+    // Whether it is high, or was so within so many cycles.
+    bool was_high(PinId pin, uint64_t cycle, uint64_t within) {
+        const bool is_high = level(pin, cycle); // which brings the other up to date
+        const uint64_t fell = ports_[pin.port].fell[pin.bit];
+        return is_high || (fell != kNever && cycle - fell < within);
+    }
     // From now on changes of this pin count: of its direction, its port bit, or what a timer makes of it.
     void show(PinId pin) { ports_[pin.port].shown |= pin.mask(); }
     // Cheap to compare, to know whether to look at the shown pins again.
@@ -133,7 +141,9 @@ class Gpio final : public Peripheral {
         uint8_t heard = 0;        // of them: their noise, too
         uint8_t watched_in = 0;   // inputs on a line of which the next edge must be known
         uint8_t has_lines = 0;
-        uint8_t shown = 0; // pins that are looked at from time to time
+        uint8_t shown = 0;      // pins that are looked at from time to time
+        uint8_t remembered = 0; // outputs of which the last time that they were high is kept
+        std::array<uint64_t, 8> fell{kNever, kNever, kNever, kNever, kNever, kNever, kNever, kNever};
         std::array<PinSource*, 8> sources{};
         // The output compare modulator: a second source; PORT decides between AND (0) and OR (1).
         std::array<PinSource*, 8> modulators{};

@@ -142,6 +142,7 @@ void Timer::capture(uint64_t cycle) {
 
 void Timer::tell_of_flags(uint8_t mask, uint64_t cycle) {
     sync(cycle);
+    update_requests(); // for a flag that falls due in this very cycle
     told_flags_ = mask;
     watch_inputs(cycle);
     reschedule();
@@ -151,6 +152,7 @@ void Timer::tell_of_flags(uint8_t mask, uint64_t cycle) {
 
 void Timer::clock_stops(uint64_t cycle) {
     sync(cycle);
+    update_requests();
     core_.schedule.cancel(slot_);
 }
 

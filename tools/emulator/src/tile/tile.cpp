@@ -14,6 +14,9 @@ constexpr avr::PinId on_chip(board::Pin pin) {
 }
 
 constexpr unsigned kSouth = 2;
+constexpr uint64_t kEyeCycles = 320'000; // 20 ms: what is lit more often than that seems to be lit
+// What a link LED and its resistor leave of a pull-up, on the ADC's channel of its pin (ADC8 is PK0): 1.8 V.
+constexpr unsigned kFirstLedChannel = 8, kLedPulledUp = 370;
 constexpr double kAheadTicks = 64; // of the last instruction of a turn, at most
 
 // A USART's pins are facts of the chip, so any instance of it may be asked: RX, then TX.
@@ -48,6 +51,10 @@ Tile::Tile(std::shared_ptr<avr::Program> program, const avr::Fuses& fuses, const
     chip_.gpio().listen(kUsartPins[board::kHostUsart][1], &host_);
     for (const board::Pin& segment : board::kSegments) {
         chip_.gpio().show(on_chip(segment));
+    }
+    for (const board::Pin& led : board::kDebugLeds) {
+        chip_.gpio().remember(on_chip(led));
+        chip_.adc().set_input(kFirstLedChannel + led.bit, kLedPulledUp);
     }
 }
 
@@ -185,8 +192,9 @@ void Tile::note_display(double turn_end) {
     }
 }
 
+// A program may dim it by lighting it now and then.
 bool Tile::lit(avr::PinId pin) {
-    return chip_.gpio().is_output(pin) && chip_.gpio().level(pin, chip_.cpu().cycle);
+    return chip_.gpio().is_output(pin) && chip_.gpio().was_high(pin, chip_.cpu().cycle, kEyeCycles);
 }
 
 uint8_t Tile::segments() {
