@@ -25,7 +25,7 @@ using namespace tilenca;
 namespace {
 
 constexpr uint32_t kHostBaud = 115200;
-constexpr uint8_t kLookMask = 3;     // lines and supply are looked at in every fourth millisecond
+constexpr uint8_t kLookMask = 3;     // lines, supply and stack are looked at in every fourth millisecond
 constexpr uint16_t kLeastStack = 64; // fewer unused bytes are an error
 constexpr Settings kDefaults = {0, TILENCA_PERIOD_MS, TILENCA_UPDATES, 255, 0};
 static_assert(TILENCA_PERIOD_MS >= kMinPeriodMs && TILENCA_PERIOD_MS <= kMaxPeriodMs, "see platformio.ini");
@@ -127,10 +127,11 @@ Health health() {
 }
 
 void look_at_board(uint32_t now_ms) {
-    if ((now_ms & kLookMask) == 0) {
-        lines.look(board::low_lines(), now_ms);
-        board::supply_watch();
+    if ((now_ms & kLookMask) != 0) {
+        return;
     }
+    lines.look(board::low_lines(), now_ms);
+    board::supply_watch();
     board::stack_watch();
     if (board::stack_unused() < kLeastStack) {
         telemetry.failed(Error::Stack);
