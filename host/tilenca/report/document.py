@@ -150,5 +150,5 @@ def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], g
     )
     environment.filters |= {"value": value_text, "interval": interval_text, "verdict": verdict, "bold": bold}
     values = {row.key: value_text(row) for section in sections for row in section["rows"]}
-    field = field_of(values)
+    field = field_of(values, facts.quick)
     return environment.get_template(template).render(facts=facts, sections=sections, gap=gap, field=field)

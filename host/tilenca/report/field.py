@@ -27,17 +27,24 @@ class Field:
     sources: tuple[str, ...]
 
 
-def field_of(values: Mapping[str, str]) -> Field:
+def field_of(values: Mapping[str, str], quick: bool) -> Field:
     """The table, with this report's numbers.
 
     Args:
-        values: the rows of the report as text, by their keys; of those that it lacks the table says so.
+        values: the rows of the report as text, by their keys.
+        quick: whether it is the quick one, which may lack some: the table says so.
+
+    Raises:
+        KeyError: a full report lacks one.
     """
     text = resources.files("tilenca.report").joinpath("field.toml").read_text(encoding="utf-8")
     told = tomllib.loads(text)
 
+    def value(key: re.Match[str]) -> str:
+        return values.get(key[1], LACKING) if quick else values[key[1]]
+
     def filled(answer: str) -> str:
-        return re.sub(r"\{([^}]+)\}", lambda key: values.get(key[1], LACKING), answer)
+        return re.sub(r"\{([^}]+)\}", value, answer)
 
     rows = ((point["what"], *map(filled, point["answers"])) for point in told["points"])
     return Field(tuple(told["columns"]), tuple(rows), tuple(told["sources"]))

@@ -74,8 +74,9 @@ class Chip final : private Bus {
     // Notes the cycle at which the instruction at a word of flash begins.
     void set_mark(uint32_t word, bool set);
     std::vector<MarkPassed>& marks_passed() { return marks_passed_; }
-    // Whether the next instruction is under a trap.
+    // Whether running it can end at a breakpoint, or after one step.
     bool may_halt() const { return !breakpoints_.empty() || cpu_.halts_after_one; }
+    // Whether the next instruction is under a trap.
     bool is_trapped() const { return program_->traps().count(cpu_.pc()) != 0; }
     // Executes the instruction before which the core has halted.
     void step_halted();
