@@ -122,7 +122,7 @@ sweep: setup-train ## measure dead tiles and lost messages at three sizes, into 
 		--plot --json --out build/sweep >/dev/null
 	@$(TOOL) bench.sweep --table build/sweep --write docs/SWEEPS.md
 
-report: setup-train ## measure every claim again (some five minutes of two cores), into docs/RESULTS.md and docs/results.html
+report: setup-train ## measure every claim again (some ten minutes of two cores), into docs/RESULTS.md and docs/results.html
 	@$(PIO) run -s -e $(ENV)
 	@$(TILENCA) report --out build/report
 	@sed 's/`report.html`/[results.html](results.html)/' build/report/RESULTS.md > docs/RESULTS.md

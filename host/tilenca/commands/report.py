@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tilenca.report.measure import Call, Folder, Results
 
 REMEDY = "make room there, or give another --out"
-MINUTES = {False: "some five minutes of two cores", True: "some two minutes of two cores"}
+MINUTES = {False: "some ten minutes of two cores", True: "some two minutes of two cores"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
