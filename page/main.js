@@ -140,7 +140,7 @@ function slideUnder(drawing) {
 
 /** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
-  history.replaceState(null, "", `?model=${model.id || model.name}${location.hash}`);
+  history.replaceState(null, "", `?${new URLSearchParams({ model: model.id || model.name })}${location.hash}`);
   run.start = null;
   source.close();
   source = openServer(listener);
@@ -188,14 +188,25 @@ function begin() {
   offerOnly(tiles);
   drawings.fill(tiles);
   if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute.`);
+  else if (tiles.source === "failed") tellFailed();
   else if (wasBuilding) notice.clear();
-  wasBuilding = tiles.source === "building";
+  wasBuilding = ["building", "failed"].includes(tiles.source);
   if (!tiles.can("open")) return;
   deeds.select(null);
   run.begin();
   bar.showNoise(run.noise);
   lesson.begin();
   tellParent(tiles, run.start?.cells ?? []);
+}
+
+/** The firmware was not built: says why, and another try or another model is the way on. */
+function tellFailed() {
+  const query = new URLSearchParams(location.search);
+  query.delete("model"); // so that the page opens with tiles that run
+  const text = query.toString();
+  history.replaceState(null, "", `${location.pathname}${text && `?${text}`}${location.hash}`);
+  const other = tiles.models.length > 1 ? "Choose another model, or reload the page" : "Reload the page";
+  notice.stay(`The firmware of ${tiles.model} was not built: ${tiles.reason}. ${other}.`);
 }
 
 /** @type {import("./stream/source.js").Listener} */

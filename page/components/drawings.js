@@ -57,7 +57,7 @@ export class Drawings {
       }
       return element("div", { class: "file" }, element("h3", {}, file.replaceAll("-", " ")), list);
     });
-    this.root.replaceChildren(...this.models(tiles), heading, help, ...parts);
+    this.root.replaceChildren(...this.models(tiles), ...(drawings.length ? [heading, help, ...parts] : []));
   }
 
   /** The choice of a model, where there is one. @param {Tiles} tiles */

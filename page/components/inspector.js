@@ -98,6 +98,7 @@ export class Inspector {
     setText(this.guess, tile.powered ? `It shows ${look}${sure}` : awayWords(tile));
     setText(this.power, tile.powered ? "Power off" : "Power on");
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
+    this.freeze.title = this.tiles.source === "watched" ? "The tile keeps it, also without power, until Thaw" : "";
     for (const one of [this.freeze, this.reset, this.press, this.blink]) one.disabled = !tile.powered;
     this.settings.update();
     this.meters.forEach((meter, index) => meter.show(

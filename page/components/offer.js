@@ -1,4 +1,5 @@
-// What the source cannot do is not offered: elements name the commands that they need in `data-needs`.
+// What the source cannot do is not offered: elements name the commands that they need in `data-needs`. Those with
+// `data-models` stay where one can choose a model: it is the way on while firmware is built, and where that fails.
 
 /** @import { Tiles } from "../stream/tiles.js" */
 
@@ -7,7 +8,8 @@ export function offerOnly(tiles) {
   document.body.dataset.source = tiles.source;
   document.body.dataset.kind = tiles.kind;
   for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-needs]"))) {
-    one.hidden = !(one.dataset.needs ?? "").split(" ").some((name) => tiles.can(name));
+    const isOffered = (one.dataset.needs ?? "").split(" ").some((name) => tiles.can(name));
+    one.hidden = !isOffered && !(one.hasAttribute("data-models") && tiles.models.length > 1);
   }
   for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-only]"))) {
     one.hidden = ![tiles.kind, tiles.source].includes(one.dataset.only ?? "");

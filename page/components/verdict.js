@@ -24,6 +24,7 @@ export function verdictOn(tiles) {
   counts.delete("");
   const ranked = [...counts].sort((a, b) => b[1] - a[1]);
   if (tiles.source === "building") return { text: `Building the firmware of ${tiles.model}`, label: "", agreed: false };
+  if (tiles.source === "failed") return { text: `The firmware of ${tiles.model} was not built`, label: "", agreed: false };
   if (total === 0) {
     if (tiles.kind === "watched") return { text: laid.length ? "No tile is heard" : "No tile yet", label: "", agreed: false };
     const text = laid.length ? "No tile has power" : "The board is empty: click a place to put a tile";

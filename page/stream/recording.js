@@ -55,7 +55,7 @@ export function openRecording(recorded, listener) {
   const end = Math.max(0, ...rest.slice(-1).map((event) => event.time), events.at(-1)?.time ?? 0);
   let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
   /** @type {StreamEvent[]} */
-  let waiting = [{ ...first, source: "recording", of: first.source, takes: TAKES }];
+  let waiting = [{ ...first, source: "recording", of: first.of ?? first.source, takes: TAKES }];
   let before = performance.now();
   let frame = requestAnimationFrame(tick);
 

@@ -6,6 +6,7 @@ import { SIDES, STREAM_VERSION } from "./source.js";
 const MOST_EVENTS = 2_000_000;
 const LONGEST_S = 1e7;
 const MOST_PLACE = 1000;
+const MOST_PERIOD_MS = 60_000;
 const CHOOSE = "choose a recording (.jsonl)";
 
 /** @typedef {(value: any, event: any) => boolean} Check */
@@ -29,12 +30,18 @@ const isListOf = (value, check) => Array.isArray(value) && value.length <= 4096 
 /** @param {any} drawing */
 const isDrawing = (drawing) =>
   isObject(drawing) && isText(drawing.name) && isText(drawing.label) && isListOf(drawing.rows, isText) && drawing.rows.length > 0;
+/** @param {any} model */
+const isModel = (model) => isObject(model) && isText(model.name) && isText(model.id) && isListOf(model.labels, isText);
+/** Of the first event. @param {any} event */
+const isStream = ({ source, of = "", model = "", models = [], looks = [], drawings = [], most_tiles = 0, most_place = 0, ...event }) =>
+  [source, of, model].every(isText) && isListOf(models, isModel) && isListOf(looks, isLook) && isListOf(drawings, isDrawing) &&
+  isWhole(most_tiles, 0, MOST_PLACE ** 2) && isWhole(most_place, 0, MOST_PLACE) && isIn(event.period_ms ?? 1, 1, MOST_PERIOD_MS);
 /** @param {any} link */
 const isLink = (link) => Array.isArray(link) && link.length === 2 && isText(link[0]) && (link[1] === null || isIn(link[1], 0, 1));
 
 /** What each subject must be, and which of them are about a tile. @type {Record<string, [Check, boolean]>} */
 const SUBJECTS = {
-  stream: [(_, event) => isText(event.source) && isListOf(event.looks ?? [], isLook) && isListOf(event.drawings ?? [], isDrawing), false],
+  stream: [(_, event) => isStream(event), false],
   run: [(run) => isObject(run) && isIn(run.seed, 0, Number.MAX_SAFE_INTEGER) && isIn(run.began ?? 0, 0, 1e12), false],
   jump: [(jump) => isObject(jump) && isIn(jump.from, 0, LONGEST_S), false],
   pace: [(pace) => isObject(pace) && isIn(pace.speed, 0, 1024) && isIn(pace.end ?? 0, 0, LONGEST_S), false],

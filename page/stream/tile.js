@@ -38,15 +38,15 @@ export function forget(tile) {
 
 /**
  * Adds a sentence of the tile.
- * @param {Tile} tile @param {Sentence | null} sentence
+ * @param {Tile} tile @param {Sentence | null} sentence @param {boolean} asked of a HELLO: it was asked for, and is no start
  * @returns {string | null} the label that it shows from now on; null where the sentence does not tell it
  */
-export function hear(tile, sentence) {
+export function hear(tile, sentence, asked = false) {
   switch (sentence?.name) {
     case "HELLO":
       Object.assign(tile, {
         modelId: sentence.modelId, channels: sentence.channels, classes: sentence.classes, periodMs: sentence.periodMs,
-        brightness: sentence.brightness, frozen: sentence.updates > 0, error: "",
+        brightness: sentence.brightness, frozen: sentence.updates > 0, error: asked ? tile.error : "",
       });
       return null;
     case "TILE":

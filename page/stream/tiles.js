@@ -28,8 +28,10 @@ export class Tiles {
     /** Those that one can choose from, and the name of the one that runs. @type {Model[]} */
     this.models = [];
     this.model = "";
-    /** What they are: "emulated", "watched", or a "recording". */
+    /** What they are: "emulated", "watched", or a "recording"; "building" or "failed": their firmware is not there. */
     this.source = "";
+    /** Why it has failed. */
+    this.reason = "";
     /** Of a recording, what was recorded; else the same. */
     this.kind = "";
     /** The commands that the source takes; null: all of them. @type {Set<string> | null} */
@@ -78,6 +80,8 @@ export class Tiles {
       if (event.stream !== STREAM_VERSION) this.refused = `The server speaks version ${event.stream}: reload the page.`;
       this.source = event.source ?? "";
       this.kind = event.of ?? this.source;
+      this.reason = event.reason ?? "";
+      this.version++; // the verdict is on these tiles
       this.takes = event.takes ? new Set(event.takes) : null;
       this.looks = event.looks ?? [];
       this.drawings = event.drawings ?? [];
@@ -163,7 +167,8 @@ export class Tiles {
       else this.cut.delete(end);
       this.isMoved = true;
     } else if (event.display) {
-      Object.assign(tile, event.display);
+      const { segments, rgb, leds } = event.display;
+      Object.assign(tile, { segments, rgb, leds });
     } else if (event.health) {
       if (tile.trouble !== event.health.trouble) this.version++;
       tile.trouble = event.health.trouble;
@@ -201,7 +206,7 @@ export class Tiles {
   /** @param {Tile} tile @param {StreamEvent} event */
   takeSentence(tile, { time, raw = "", asked }) {
     const sentence = parseSentence(raw);
-    const label = hear(tile, sentence);
+    const label = hear(tile, sentence, asked);
     if (label !== null) this.show(tile, time, label);
     if (sentence?.name !== "HELLO" || asked) return; // one that was asked for is no start
     forget(tile);

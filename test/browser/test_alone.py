@@ -156,3 +156,40 @@ def test_no_damaged_recording_breaks_the_page(visit: Visit, server: PageServer, 
     assert outcomes["shown"] > 10
     assert all(len(words) < 200 for words in outcomes["refused"])
     assert sum(words.startswith("line ") for words in outcomes["refused"]) > 90
+
+
+def test_a_recording_is_no_way_to_change_what_the_page_knows(visit: Visit, server: PageServer) -> None:
+    """What a first event offers is checked, and a display is its pins only."""
+    visit.page.goto(server.url)
+    told = visit.page.evaluate(
+        """async () => {
+          const { parseRecording } = await import("./stream/recording_file.js");
+          const { openRecording } = await import("./stream/recording.js");
+          const { Tiles } = await import("./stream/tiles.js");
+          const text = (about, ...more) => [{ time: 0, stream: 1, source: "watched", ...about },
+            { time: 0, run: { seed: 1 } }, ...more].map((one) => JSON.stringify(one)).join("\\n");
+          const strange = [{ models: {} }, { models: [{ name: "x", id: "1" }] }, { model: 3 },
+            { period_ms: "a" }, { period_ms: 0 }, { most_tiles: -1 }, { most_place: 1e9 }, { of: [] }];
+          const refused = strange.filter((about) => {
+            try {
+              parseRecording(text(about));
+              return false;
+            } catch {
+              return true;
+            }
+          });
+          const display = { segments: 1, rgb: [0, 0, 0], leds: "----", port: "other", link: null };
+          const models = [{ name: "x", id: "1", labels: ["1"] }];
+          const events = parseRecording(text({ of: "emulated", period_ms: 20, models },
+            { time: 1, port: "tile-01", display }));
+          const tiles = new Tiles();
+          tiles.take(events);
+          const tile = tiles.byPort.get("tile-01");
+          const of = await new Promise((resolve) => {
+            openRecording(events, { onEvents: ([first]) => resolve(first.of) });
+          });
+          const { port, link, segments } = tile;
+          return { refused: refused.length, all: strange.length, port, link, segments, of };
+        }"""
+    )
+    assert told == {"refused": 8, "all": 8, "port": "tile-01", "link": {}, "segments": 1, "of": "emulated"}

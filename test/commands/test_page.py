@@ -125,6 +125,7 @@ def test_options_that_would_be_ignored_are_refused(
         (["--record", "x"], "--record does nothing without --port"),
         (["--tiles", "x"], "--tiles does nothing without --port"),
         (["--html", "x"], "--html does nothing without --replay"),
+        (["--replay", "x", "--html", "y", "--listen", "127.0.0.1:0"], "leave --listen out"),
         (["--port", "x", "--elf", "y"], "--elf is for emulated tiles"),
         (["--port", "x", "--model", "y"], "--model is for emulated tiles"),
         (["--replay", "x", "--port", "y"], "--replay shows a recording, and no tiles"),

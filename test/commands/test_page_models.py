@@ -1,5 +1,7 @@
 """Which models the page offers, and which drawings with each."""
 
+import shutil
+import threading
 from pathlib import Path
 
 import pytest
@@ -49,4 +51,30 @@ def test_an_image_that_goes_away_is_not_built(firmware: Path, tmp_path: Path) ->
     [model] = page_models(copy, None, ())
     copy.unlink()
     with pytest.raises(BuildError, match="no such file any more"):
-        model.image()
+        model.image(threading.Event())
+
+
+def test_firmware_beside_a_model_of_other_weights_is_none(
+    firmware: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "hex"
+    shutil.copytree(paths.MODELS / "hex", folder, ignore=shutil.ignore_patterns("firmware"))
+    image = paths.model_elf(folder)
+    image.parent.mkdir(parents=True)
+    shutil.copyfile(firmware, image)
+    model = page_models(None, folder, ())[0]
+    assert model.find_image() is None, "it is of the digits"
+    monkeypatch.setattr(paths, "PROJECT", None)
+    with pytest.raises(BuildError, match="another model"):
+        model.image(threading.Event())
+
+
+def test_an_installed_package_is_not_built_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "hex"
+    shutil.copytree(paths.MODELS / "hex", folder, ignore=shutil.ignore_patterns("firmware"))
+    monkeypatch.setattr(paths, "CHECKOUT", None)
+    monkeypatch.setattr(paths, "MODELS", tmp_path)
+    model = page_models(None, folder, ())[0]
+    with pytest.raises(BuildError, match="no firmware was built of it"):
+        model.image(threading.Event())
+    assert not paths.model_firmware(folder).exists()

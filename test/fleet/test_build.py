@@ -5,13 +5,16 @@ import shlex
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
 
 from support.bootloader_stand_in import StandIn
 from tilenca.base import paths
+from tilenca.base.errors import BuildError
 from tilenca.cli import main
+from tilenca.fleet.build import CANCELLED, build
 
 LIMIT_S = 60
 
@@ -34,6 +37,30 @@ def test_an_interrupted_build_leaves_nothing_running(tmp_path: Path) -> None:
         flashing.send_signal(signal.SIGTERM)
         _, chatter = flashing.communicate(timeout=LIMIT_S)
     assert flashing.returncode == 130, chatter
+    assert [_runs(process) for process in started] == [False, False]
+
+
+def test_a_cancelled_build_leaves_nothing_running(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = tmp_path / "told"
+    os.mkfifo(told)
+    (tmp_path / "pio").write_text(f"#!/bin/sh\nsleep 600 & echo $$ $! > {shlex.quote(str(told))}; wait\n")
+    (tmp_path / "pio").chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    cancelled, reasons = threading.Event(), []
+
+    def building() -> None:
+        try:
+            build(tmp_path, quiet=True, cancelled=cancelled)
+        except BuildError as error:
+            reasons.append(str(error))
+
+    thread = threading.Thread(target=building)
+    thread.start()
+    started = [Path("/proc") / number for number in told.read_text().split()]
+    assert all(map(_runs, started))
+    cancelled.set()
+    thread.join(LIMIT_S)
+    assert reasons == [CANCELLED]
     assert [_runs(process) for process in started] == [False, False]
 
 

@@ -6,10 +6,10 @@ from support.heard_fleet import STATE, link
 from tilenca.fleet.grid import Grid
 from tilenca.fleet.state import PortNews
 from tilenca.fleet.tiles_file import Place
-from tilenca.page.fleet_teller import NO_PORT, FleetTeller
+from tilenca.page.fleet_teller import ANSWER_S, NO_PORT, FleetTeller
 from tilenca.protocol.constants import PROTOCOL_VERSION
 from tilenca.protocol.line_reader import Heard
-from tilenca.protocol.sentences import HelloSentence, Sentence, TileSentence, format_sentence
+from tilenca.protocol.sentences import ErrorSentence, HelloSentence, Sentence, TileSentence, format_sentence
 from tilenca.protocol.stream import KINDS, StreamEvent
 from tilenca.shapes.glyphs import look_of
 
@@ -128,13 +128,38 @@ def test_another_model_and_a_label_of_none_bring_the_classes_anew() -> None:
 def test_a_hello_that_was_asked_for_is_no_start() -> None:
     lab = two()
     lab.look()
-    lab.teller.asked("/dev/a")
-    [told] = [event for event in lab.say("/dev/a", hello(0x1234)) if "raw" in event]
+    lab.say("/dev/a", ErrorSentence(1, 200, "FAULT", "of the past"))
+    lab.teller.asked("/dev/a", lab.time_s)
+    events = lab.say("/dev/a", hello(0x1234))
+    [told] = [event for event in events if "raw" in event]
     assert told["asked"]
+    assert of(events, "note") == []
+    view = lab.teller.fleet.tiles["/dev/a"]
+    assert (view.hello, view.error) == (hello(0x1234), ErrorSentence(1, 200, "FAULT", "of the past"))
+    again = lab.say("/dev/a", TileSentence(1, 200, 9, "4", 4, 30, "-E--", STATE))
+    assert of(again, "note") == [], "it has shown that before"
     assert of(lab.look(), "display") == [], "it goes on showing what it did"
     [told] = [event for event in lab.say("/dev/a", hello(0x1234)) if "raw" in event]
     assert "asked" not in told
     assert of(lab.look(), "display", "/dev/a")[0]["segments"] == 0, "it has started"
+
+
+def test_who_comes_later_hears_last_that_a_port_is_closed() -> None:
+    lab = two()
+    lab.teller.take(PortNews(lab.time_s, "/dev/b", False, "went away"))
+    about = [event for event in lab.teller.all(lab.time_s) if event.get("port") == "/dev/b"]
+    kinds = [kind for event in about for kind in ("raw", "open") if kind in event]
+    assert kinds == ["raw", "raw", "open"], "what it has said before does not hold any more"
+
+
+def test_a_hello_long_after_it_was_asked_for_is_a_start() -> None:
+    lab = two()
+    lab.teller.asked("/dev/a", lab.time_s)
+    lab.time_s += ANSWER_S
+    events = lab.say("/dev/a", hello(0x1234))
+    [told] = [event for event in events if "raw" in event]
+    assert "asked" not in told
+    assert any(note.startswith("started: ") for note in of(events, "note"))
 
 
 def test_who_comes_later_is_told_everything_and_news_goes_on() -> None:

@@ -86,3 +86,48 @@ def test_what_is_none_is_refused(tmp_path: Path, text: str, words: str) -> None:
         page_recording(record, LABELS, lambda model: None)
     with pytest.raises(UsageError, match="No such file"):
         page_recording(tmp_path / "none", LABELS, lambda model: None)
+
+
+BEGINNING = '{"time": 0, "stream": 1, "source": "emulated"}\n{"time": 0, "run": {"seed": 1}}\n'
+PACE = '{"time": 1, "pace": {"speed": 1, "paused": false, "share": 1}}\n'
+
+
+def test_one_of_the_page_that_is_cut_loses_its_last_line_only(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = tmp_path / "record.jsonl"
+    record.write_text(BEGINNING + PACE + PACE[:20])
+    assert page_recording(record, LABELS, lambda model: None) == BEGINNING + PACE
+    assert f"{record}:4: cut off in its middle" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("nonsense", "3: is no event"),
+        ("[]", "3: is no event"),
+        ('{"time": 1e8, "pace": {}}', "3: has no time"),
+        ('{"time": NaN, "pace": {}}', "3: has no time"),
+        ('{"time": 1, "run": {"seed": 1}}', "3: it has more than one run"),
+        ('{"time": 1, "port": "a", "place": [0, 1001]}', "3: has a place beyond 1000"),
+        (f'{{"time": 1, "port": "a", "raw": "{"x" * 4097}"}}', "3: has a text of more than 4096"),
+    ],
+)
+def test_what_the_page_would_not_show_is_refused(tmp_path: Path, line: str, why: str) -> None:
+    record = tmp_path / "record.jsonl"
+    record.write_text(f"{BEGINNING}{line}\n{PACE}")
+    with pytest.raises(UsageError, match=why):
+        page_recording(record, LABELS, lambda model: None)
+
+
+def test_one_that_has_no_run_or_too_many_events_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record = tmp_path / "record.jsonl"
+    record.write_text(BEGINNING.splitlines(keepends=True)[0])
+    with pytest.raises(UsageError, match="does not begin"):
+        page_recording(record, LABELS, lambda model: None)
+    monkeypatch.setattr("tilenca.page.replayed.MOST_EVENTS", 3)
+    record.write_text(BEGINNING + 2 * PACE)
+    with pytest.raises(UsageError, match="more than 3 events"):
+        page_recording(record, LABELS, lambda model: None)

@@ -1,7 +1,14 @@
 """The server of the page, over real sockets: who is let in, what gets through, and who can hold it up."""
 
+import os
 import re
+import shlex
+import shutil
+import signal
 import socket
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +23,7 @@ from tilenca.page.guard import HEADERS
 from tilenca.page.outbox import MOST_UNSEEN
 from tilenca.page.server import MAX_MESSAGE, MOST_CLIENTS
 
+LIMIT_S = 60
 OPEN = {"do": "open", "cells": [[0, 0], [0, 1]], "spread_s": 0}
 
 
@@ -157,6 +165,50 @@ def test_so_many_pages_and_no_more(server: PageServer) -> None:
         if "stream" in told:
             return
     pytest.fail("no place became free")
+
+
+@pytest.mark.parametrize("how", ["Ctrl-C", "the page goes"])
+def test_a_build_ends_with_the_page_that_waits_for_it(tmp_path: Path, how: str) -> None:
+    """The "pio" here starts a compiler that takes ten minutes, and says both their numbers."""
+    folder, told = tmp_path / "mine", tmp_path / "told"
+    shutil.copytree(paths.MODELS / "hex", folder, ignore=shutil.ignore_patterns("firmware"))
+    os.mkfifo(told)
+    (tmp_path / "pio").write_text(f"#!/bin/sh\nsleep 600 & echo $$ $! > {shlex.quote(str(told))}; wait\n")
+    (tmp_path / "pio").chmod(0o755)
+    # `pio` is looked for beside the interpreter.
+    script = "import sys; sys.executable = sys.argv.pop(1); from tilenca.cli import main; sys.exit(main())"
+    words = [str(tmp_path / "python"), "page", "--model", str(folder), "--listen", "127.0.0.1:0", "--no-open"]
+    serving = subprocess.Popen(
+        [sys.executable, "-c", script, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert serving.stdout is not None
+        client = WebSocketClient(PageServer(serving.stdout.readline().strip(), serving).address)
+        assert client.watch("stream")["source"] == "building"
+        started = [Path("/proc") / number for number in told.read_text().split()]
+        assert all(map(runs, started))
+        if how == "the page goes":
+            client.close()
+            end_s = time.monotonic() + LIMIT_S
+            while any(map(runs, started)):
+                assert time.monotonic() < end_s, "its build goes on"
+                time.sleep(0.05)
+        serving.send_signal(signal.SIGINT)
+        _, chatter = serving.communicate(timeout=LIMIT_S)
+        assert not any(map(runs, started))
+        assert "Traceback" not in chatter
+        client.close()
+    finally:
+        serving.kill()
+        serving.wait()
+
+
+def runs(process: Path) -> bool:
+    """Whether a process runs; one that has ended may wait for its parent to notice (state Z)."""
+    try:
+        return (process / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_noise_instead_of_http_does_no_harm(server: PageServer) -> None:

@@ -5,9 +5,9 @@ import threading
 import pytest
 
 from tilenca.base.errors import TilencaError, UsageError
-from tilenca.page.session import MOST_COMMANDS, STEP_SLICE_S, Session
+from tilenca.page.session import MOST_COMMANDS, STEP_SLICE_S, EndedError, Session
 from tilenca.protocol.stream import StreamEvent, place_event, stream_event
-from tilenca.protocol.stream_commands import Pull, Put, Reset, Step, StreamCommand
+from tilenca.protocol.stream_commands import Blink, Pull, Put, Reset, Step, StreamCommand
 
 LIMIT_S = 20
 
@@ -22,6 +22,7 @@ class Scripted:
         self.in_take = threading.Event()
         self.go_on = threading.Event()
         self.go_on.set()
+        self.abandoned = threading.Event()
 
     def begin(self) -> list[StreamEvent]:
         return [stream_event("scripted")]
@@ -39,6 +40,8 @@ class Scripted:
                 raise UsageError("no such tile")
             case Pull():
                 self.broken = True
+            case Blink():
+                raise EndedError("nobody is there")
 
     def advance(self, wall_s: float) -> list[StreamEvent]:
         assert 0 <= wall_s <= 0.1
@@ -51,6 +54,9 @@ class Scripted:
     @property
     def is_idle(self) -> bool:
         return True
+
+    def abandon(self) -> None:
+        self.abandoned.set()
 
     def close(self) -> None:
         self.closed = True
@@ -153,6 +159,36 @@ def test_a_mistake_in_a_source_is_told_and_ends_the_run(capsys: pytest.CaptureFi
     assert source.closed
     assert "Traceback" in capsys.readouterr().err
     session.close()
+
+
+@pytest.mark.parametrize("in_advance", [False, True])
+def test_a_source_that_is_over_ends_the_run_with_its_reason(in_advance: bool) -> None:
+    class Over(Scripted):
+        def advance(self, wall_s: float) -> list[StreamEvent]:
+            if in_advance:
+                raise EndedError("nobody is there")
+            return []
+
+    source, heard, ended = Over(), Heard(), threading.Event()
+    session = Session(lambda: source, heard.take, ended.set)
+    session.offer(Blink("tile-01"))
+    assert ended.wait(LIMIT_S)
+    assert [event.get("refused") for event in heard.events] == [None, "nobody is there"]
+    assert source.closed
+    session.close()
+
+
+def test_what_takes_long_is_abandoned_when_it_is_closed() -> None:
+    class Long(Scripted):
+        def advance(self, wall_s: float) -> list[StreamEvent]:
+            assert self.abandoned.wait(LIMIT_S)
+            return []
+
+    source, heard = Long(), Heard()
+    session = Session(lambda: source, heard.take)
+    heard.wait_for(1)
+    session.close()
+    assert source.closed
 
 
 @pytest.mark.parametrize("length", [1, 5000])

@@ -12,9 +12,11 @@ from support.tile_port import Tile
 from tilenca.base.errors import UsageError
 from tilenca.fleet.listen import Listener
 from tilenca.fleet.recording import Recorder, read_recording
+from tilenca.page.session import EndedError
 from tilenca.page.watched import TAKES, Watch, WatchedSource
 from tilenca.protocol import stream_commands as commands
-from tilenca.protocol.sentences import framed
+from tilenca.protocol.constants import PROTOCOL_VERSION
+from tilenca.protocol.sentences import HelloSentence, format_sentence, framed
 from tilenca.protocol.stream import StreamEvent
 from tilenca.protocol.stream_commands import KINDS
 
@@ -128,6 +130,10 @@ def test_a_tile_that_speaks_is_asked_what_it_runs(page: Page, tiles: list[Tile])
 def test_a_command_reaches_its_tile_and_what_it_refuses_is_told(page: Page, tiles: list[Tile]) -> None:
     for tile in tiles:
         page.wait_for(open_of(tile.port, True))
+    for tile in tiles:
+        tile.say()
+        assert tile.read_line() == framed("ASK").strip()
+    page.wait_for(raw_of(tiles[1].port, "TILE"))
     page.source.take(commands.Set("period", 50, None))
     for tile in tiles:
         assert tile.read_line() == framed("SET,period,50").strip()
@@ -160,6 +166,55 @@ def test_a_watch_that_breaks_off_says_so(
         raise ZeroDivisionError("no such share")
 
     monkeypatch.setattr(watch._listener, "poll", broken)
-    refusal = page.wait_for(lambda event: "refused" in event)["refused"]
-    assert refusal == "the tiles are not read any more: ZeroDivisionError: no such share"
+    why = "the tiles are not read any more: ZeroDivisionError: no such share"
+    with pytest.raises(EndedError, match=why):
+        page.wait_for(lambda event: False)
     assert "Traceback" in capsys.readouterr().err
+    with pytest.raises(EndedError, match=why):
+        page.source.take(commands.Set("period", 50))
+    late = WatchedSource(watch)
+    with pytest.raises(EndedError, match=why):
+        late.begin()
+    late.close()
+
+
+def test_a_tile_that_does_not_answer_holds_up_no_other_and_no_news(page: Page, tiles: list[Tile]) -> None:
+    mute, well = tiles
+    for tile in tiles:
+        page.wait_for(open_of(tile.port, True))
+    page.source.take(commands.Blink(mute.port, 3))
+    assert mute.read_line() == framed("BLINK,3").strip()
+    page.source.take(commands.Blink(mute.port, 4))
+    page.source.take(commands.Blink(well.port, 5))
+    assert well.read_line() == framed("BLINK,5").strip()
+    well.write(framed("ACK,2,BLINK,5"))
+    paces = 0
+    while not (event := page.wait_for(lambda event: "pace" in event or "refused" in event)).get("refused"):
+        paces += 1
+    assert event["refused"] == f"{mute.port}: no answer to 3 commands"
+    assert paces > 5, "time goes on meanwhile"
+    assert [mute.read_line() for _ in range(3)] == [framed(f"BLINK,{s}").strip() for s in (3, 3, 4)]
+
+
+def test_it_ends_though_a_tile_does_not_answer(tiles: list[Tile], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tilenca.fleet.command.AGAIN_S", 1000.0)
+    with Listener([tiles[0].port], None) as listener:
+        watch = Watch(listener, tuple("0123456789"), lambda model: None)
+        with watch:
+            page = Page(watch)
+            page.wait_for(open_of(tiles[0].port, True))
+            page.source.take(commands.Blink(tiles[0].port, 3))
+            tiles[0].read_line()
+            leaving_s = time.monotonic()
+        assert time.monotonic() - leaving_s < LIMIT_S
+
+
+def test_thaw_brings_back_what_was_set_before_freeze(page: Page, tiles: list[Tile]) -> None:
+    page.wait_for(open_of(tiles[0].port, True))
+    tiles[0].write(format_sentence(HelloSentence(PROTOCOL_VERSION, 1, 0x1234, 21, 11, 20, 500, 1, 0, 255)))
+    page.wait_for(raw_of(tiles[0].port, "HELLO"))
+    for on, value in ((True, 1), (False, 500), (False, 0)):
+        page.source.take(commands.Freeze(tiles[0].port, on))
+        assert tiles[0].read_line() == framed(f"SET,updates,{value}").strip()
+        tiles[0].write(framed(f"ACK,1,SET,updates,{value}"))
+        assert tiles[0].read_line() == framed("ASK").strip()

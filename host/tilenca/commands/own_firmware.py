@@ -1,6 +1,7 @@
 """The firmware of a model, built beside the model's files: the project's own firmware stays as it is."""
 
 import shutil
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,7 +18,13 @@ PARTS = ("include", "src")
 RENDERED = "model"  # the folder of both parts that `render` fills
 
 
-def build_beside(model: Model, folder: Path, force: bool = False, quiet: bool = False) -> Path:
+def build_beside(
+    model: Model,
+    folder: Path,
+    force: bool = False,
+    quiet: bool = False,
+    cancelled: threading.Event | None = None,
+) -> Path:
     """Builds a model's firmware in its folder; returns the image. What is up to date is not built again.
 
     Args:
@@ -25,9 +32,10 @@ def build_beside(model: Model, folder: Path, force: bool = False, quiet: bool = 
         folder: of the model.
         force: overwrite rendered files that were edited by hand.
         quiet: do not say that it builds.
+        cancelled: ends the build as soon as it is set.
 
     Raises:
-        BuildError: the model does not fit, there is no project, or the build failed.
+        BuildError: the model does not fit, there is no project, or the build failed or was cancelled.
     """
     check_fits(model)
     sources, out = project() / "firmware", paths.model_firmware(folder)
@@ -36,7 +44,7 @@ def build_beside(model: Model, folder: Path, force: bool = False, quiet: bool = 
     except OSError as error:
         raise BuildError(f"{error.filename or out}: {error.strerror}; make {folder} writable") from error
     write_files(out, render(model), force)
-    build(out, quiet)
+    build(out, quiet, cancelled)
     return paths.model_elf(folder)
 
 
@@ -72,10 +80,15 @@ def image_to_write(folder: Path, building: bool = True) -> Path:
     Raises:
         BuildError: as `build_beside` and `image_of`.
     """
-    installed = paths.CHECKOUT is None and folder.resolve().is_relative_to(paths.MODELS.resolve())
-    if not building or installed or paths.PROJECT is None:
+    if not building or not can_build(folder):
         return image_of(folder)
     return build_beside(load_model(folder), folder)
+
+
+def can_build(folder: Path) -> bool:
+    """Whether a model's firmware can be built beside it: an installed package is not written to."""
+    installed = paths.CHECKOUT is None and folder.resolve().is_relative_to(paths.MODELS.resolve())
+    return paths.PROJECT is not None and not installed
 
 
 def _copy_sources(sources: Path, out: Path) -> None:

@@ -140,6 +140,8 @@ def _check_combinations(args: argparse.Namespace) -> None:
         raise UsageError("--record does nothing without --port; add it, or leave --record out")
     if args.tiles and not (args.port or args.replay):
         raise UsageError("--tiles does nothing without --port; add it, or leave --tiles out")
+    if args.html and args.listen:
+        raise UsageError("--html writes a file and serves nothing; leave --listen out")
     if args.html and not args.replay:
         raise UsageError("--html does nothing without --replay; add it, or leave --html out")
     if args.replay and (args.port or args.elf or args.model):

@@ -1,5 +1,6 @@
 """The models that `tilenca page` offers: the one of the firmware or of `--model`, and those that ship."""
 
+import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -10,7 +11,7 @@ from tilenca.base.project import build_remedy, firmware_image
 from tilenca.base.shipped import model_names
 from tilenca.commands.arguments import existing_image
 from tilenca.commands.origin import model_with_id, own_shapes
-from tilenca.commands.own_firmware import build_beside, image_of
+from tilenca.commands.own_firmware import build_beside, can_build, image_of
 from tilenca.emulator.greeting import greeting
 from tilenca.model.file import Model, load_model
 from tilenca.page.chosen import ModelOffer
@@ -42,7 +43,7 @@ def page_models(elf: Path | None, model: Path | None, shapes: Sequence[Path]) ->
 
 
 def _can_be_had(offer: ModelOffer) -> bool:
-    return offer.find_image() is not None or paths.PROJECT is not None
+    return can_build(paths.MODELS / offer.name) or offer.find_image() is not None
 
 
 def _of_image(image: Path, shapes: Sequence[Path]) -> ModelOffer:
@@ -53,7 +54,7 @@ def _of_image(image: Path, shapes: Sequence[Path]) -> ModelOffer:
     offer = _drawings(*known, shapes) if known else load_offer(shapes)
     name = known[1].name if known else image.name
 
-    def again() -> Path:
+    def again(cancelled: threading.Event) -> Path:
         raise BuildError(f"{image}: no such file any more; {build_remedy()}")
 
     return ModelOffer(name, hello.model_id if hello else None, offer, _finder(image), again)
@@ -65,12 +66,23 @@ def _of_folder(folder: Path, shapes: Sequence[Path]) -> ModelOffer:
     offer = _drawings(model, folder, shapes)
 
     def find() -> Path | None:
-        with suppress(BuildError):
-            if (image := image_of(folder)).is_file():
+        with suppress(TilencaError):
+            if (image := image_of(folder)).is_file() and _runs(image, model):
                 return image
         return None
 
-    return ModelOffer(folder.resolve().name, model.model_id, offer, find, lambda: build_beside(model, folder))
+    def build(cancelled: threading.Event) -> Path:
+        if not can_build(folder):
+            raise BuildError(f"{image_of(folder)}: has another model than {folder}; {build_remedy()}")
+        return build_beside(model, folder, cancelled=cancelled)
+
+    return ModelOffer(folder.resolve().name, model.model_id, offer, find, build)
+
+
+def _runs(image: Path, model: Model) -> bool:
+    """Whether an image has a model: one beside it may be of weights that were trained anew since."""
+    hello = greeting(image)
+    return hello is not None and hello.model_id == model.model_id
 
 
 def _finder(image: Path) -> Callable[[], Path | None]:

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -14,16 +15,20 @@ from tilenca.base.project import install_remedy, project
 from tilenca.base.signals import held_back
 from tilenca.base.stdio import warn
 
+CANCELLED = "the build was cancelled"
+LOOK_S = 0.1
 
-def build(sources: Path | None = None, quiet: bool = False) -> None:
+
+def build(sources: Path | None = None, quiet: bool = False, cancelled: threading.Event | None = None) -> None:
     """Builds the project's firmware unless it is up to date. Shows the build's output only if it fails.
 
     Args:
         sources: a folder with `include` and `src` to build instead of the project's, in its folder `build`.
         quiet: do not say that it builds.
+        cancelled: ends the build, with all processes that it has started, as soon as it is set.
 
     Raises:
-        BuildError: there is no project, PlatformIO is missing, or the build failed.
+        BuildError: there is no project, PlatformIO is missing, or the build failed or was cancelled.
     """
     folder = project()
     beside = Path(sys.executable).with_name("pio")
@@ -53,7 +58,7 @@ def build(sources: Path | None = None, quiet: bool = False) -> None:
                 stderr=subprocess.STDOUT,
                 process_group=0,
             )
-        output, _ = building.communicate()
+        output = _output(building, cancelled)
     except BaseException:
         if building is not None:
             with suppress(ProcessLookupError):
@@ -65,3 +70,13 @@ def build(sources: Path | None = None, quiet: bool = False) -> None:
         raise BuildError(
             f"`{' '.join(command)}` failed with status {building.returncode}; its output is above"
         )
+
+
+def _output(building: subprocess.Popen[bytes], cancelled: threading.Event | None) -> bytes:
+    """Waits for a build to end; returns what it has printed."""
+    while True:
+        try:
+            return building.communicate(timeout=None if cancelled is None else LOOK_S)[0]
+        except subprocess.TimeoutExpired:
+            if cancelled is not None and cancelled.is_set():
+                raise BuildError(CANCELLED) from None

@@ -1,7 +1,7 @@
 """Sends commands to many tiles at once, and waits until each has acknowledged."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tilenca.fleet.reader import PortReader
@@ -23,11 +23,54 @@ class Reply:
     problem: str = ""
 
 
+class Commands:
+    """Commands on their way: they are sent, and sent again where no answer comes. It waits for nothing.
+
+    Attributes:
+        replies: of the ports that have answered, or been given up.
+    """
+
+    def __init__(self, reader: PortReader, orders: Mapping[str, bytes], name: str) -> None:
+        """Sends nothing yet; the arguments are those of `command_all`."""
+        self._reader, self._name = reader, name
+        self._orders = dict(orders)
+        self._sent = dict.fromkeys(orders, 0)
+        self._due_s = dict.fromkeys(orders, time.monotonic())
+        self.replies: dict[str, Reply] = {}
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all have."""
+        return len(self.replies) == len(self._orders)
+
+    def send(self) -> dict[str, Reply]:
+        """Sends what is due; returns the ports that it gives up, since no answer comes."""
+        given_up = {}
+        for port in self._orders:
+            if port in self.replies or time.monotonic() < self._due_s[port]:
+                continue
+            if self._sent[port] == ATTEMPTS:
+                given_up[port] = self.replies[port] = Reply(problem=f"no answer to {ATTEMPTS} commands")
+                continue
+            self._reader.write(port, self._orders[port])
+            self._sent[port] += 1
+            self._due_s[port] = time.monotonic() + AGAIN_S
+        return given_up
+
+    def take(self, event: Event) -> Reply | None:
+        """An event of the reader; returns the reply that it is, if it is one."""
+        if event.port not in self._orders or event.port in self.replies:
+            return None
+        if (reply := _reply(event, self._name)) is None:
+            return None
+        self.replies[event.port] = reply
+        return reply
+
+
 def command_all(
     reader: PortReader,
     orders: Mapping[str, bytes],
     name: str,
-    hear: Callable[[Event], None] = lambda event: None,
 ) -> dict[str, Reply]:
     """Sends each port its command and waits for the tile's answer.
 
@@ -37,29 +80,16 @@ def command_all(
         reader: with the ports open; the tiles run.
         orders: the command of each port.
         name: of the commands; it identifies the answers.
-        hear: called with every event meanwhile.
 
     Returns:
         A reply for each port, in the order of `orders`.
     """
-    replies: dict[str, Reply] = {}
-    sent = dict.fromkeys(orders, 0)
-    due_s = dict.fromkeys(orders, time.monotonic())
-    while len(replies) < len(orders):
-        for port, order in orders.items():
-            if port in replies or time.monotonic() < due_s[port]:
-                continue
-            if sent[port] == ATTEMPTS:
-                replies[port] = Reply(problem=f"no answer to {ATTEMPTS} commands")
-                continue
-            reader.write(port, order)
-            sent[port] += 1
-            due_s[port] = time.monotonic() + AGAIN_S
+    commands = Commands(reader, orders, name)
+    while not commands.is_over:
+        commands.send()
         for event in reader.poll(TICK_S):
-            hear(event)
-            if event.port in orders and event.port not in replies and (reply := _reply(event, name)):
-                replies[event.port] = reply
-    return {port: replies[port] for port in orders}
+            commands.take(event)
+    return {port: commands.replies[port] for port in orders}
 
 
 def _reply(event: Event, name: str) -> Reply | None:

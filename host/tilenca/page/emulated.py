@@ -271,6 +271,9 @@ class EmulatedSource:
             pace, now_s = self._pace, self._array.time_s
             self._events.append(pace_event(now_s, pace.speed, pace.paused, pace.share, self._timeline.end_s))
 
+    def abandon(self) -> None:
+        """Nothing takes long here."""
+
     def close(self) -> None:
         """Frees the tiles."""
         if self._emulation is not None:

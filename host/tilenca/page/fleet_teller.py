@@ -29,6 +29,10 @@ from tilenca.shapes.glyphs import Look, look_of, looks_of
 
 NO_PORT = "no port"
 NO_LINKS = "----"
+# A tile that was asked for its HELLO answers by then; a later one is a start.
+ANSWER_S = 2.0
+# What a tile has said, of what a HELLO at its start makes void.
+SAID = ("tile", "links", "health", "time", "error", "board", "board_before")
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ class FleetTeller:
         self._reporter = Reporter(self.fleet)
         self.looks: list[Look] = looks_of(labels if UNKNOWN in labels else [*labels, UNKNOWN])
         self._models: set[int] = set()
-        self._asked: set[str] = set()
+        self._asked: dict[str, float] = {}
         self._notes: deque[StreamEvent] = deque(maxlen=MOST_NOTES)
         self._shown: dict[str, _Shown] = {}
         self._last: dict[tuple[str, str, str], StreamEvent] = {}
@@ -79,33 +83,43 @@ class FleetTeller:
     def take(self, event: Event) -> list[StreamEvent]:
         """An event of a port, and what it changes in words."""
         if isinstance(event, PortNews) and not event.is_open:
-            self._asked.discard(event.port)
+            self._asked.pop(event.port, None)
         told = as_record(event)
         told["time"] = self._page_s(event.time_s)
-        if event.port in self._asked and isinstance(getattr(event, "sentence", None), HelloSentence):
-            self._asked.discard(event.port)
+        answers = self._answers(event)
+        if answers:
             told["asked"] = True
             self._take_answer(event)
         else:
             self.fleet.take(event)
         if isinstance(event, Heard):
             self._last[(event.port, *subject_of(told["raw"]))] = told
-        notes = [
-            note_event(told["time"], news.port, news.text, news.bad) for news in self._reporter.take(event)
-        ]
+        news = [] if answers else self._reporter.take(event)
+        notes = [note_event(told["time"], one.port, one.text, one.bad) for one in news]
         self._notes.extend(notes)
         return [*self._classes(event, told["time"]), told, *notes]
 
-    def asked(self, port: str) -> None:
-        """The tile behind a port was asked for its HELLO: the next one is no start of the tile."""
-        self._asked.add(port)
+    def asked(self, port: str, now_s: float) -> None:
+        """The tile behind a port is asked for its HELLO at `now_s`, in seconds since 1970.
+
+        The next one is no start of the tile, if it comes soon.
+        """
+        self._asked[port] = now_s
+
+    def _answers(self, event: Event) -> bool:
+        """Whether an event is a HELLO that was asked for."""
+        if not isinstance(getattr(event, "sentence", None), HelloSentence):
+            return False
+        asked_s = self._asked.pop(event.port, None)
+        return asked_s is not None and event.time_s - asked_s <= ANSWER_S
 
     def _take_answer(self, event: Event) -> None:
         """Adds a HELLO that was asked for: what the tile has said before still holds."""
         view = self.fleet.tiles[event.port]
-        said = view.tile, view.links, view.health, view.time
+        said = {name: getattr(view, name) for name in SAID}
         self.fleet.take(event)
-        view.tile, view.links, view.health, view.time = said
+        for name, value in said.items():
+            setattr(view, name, value)
 
     def _classes(self, event: Event, time_s: float) -> list[StreamEvent]:
         """The classes anew, where a tile runs another model, or shows what none of them is called."""
@@ -176,7 +190,8 @@ class FleetTeller:
         said = sorted(self._last.values(), key=lambda event: event["time"])
         looked = self.look(now_s)
         self._shown = shown
-        return [classes_event(time_s, self.told_looks()), *ports, *said, *looked, *self._notes]
+        # A port that has closed is told after what its tile has said: it says so no more.
+        return [classes_event(time_s, self.told_looks()), *said, *ports, *looked, *self._notes]
 
 
 def _display(view: TileView) -> tuple[int, tuple[int, int, int], str]:

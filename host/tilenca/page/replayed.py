@@ -1,10 +1,12 @@
 """A recording for the page: one of the page itself, or one of `--record`, told as the page tells of tiles."""
 
+import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
+from tilenca.base.stdio import warn
 from tilenca.fleet.grid import Grid
 from tilenca.fleet.recording import read_recording
 from tilenca.fleet.state import Event, PortNews
@@ -15,6 +17,13 @@ from tilenca.protocol.stream import STREAM_VERSION, StreamEvent, pace_event, run
 LOOK_S = 0.1
 # Times below are of emulated tiles, and count from the run's beginning.
 LONGEST_S = 86_400.0 * 365
+# What the page takes.
+MOST_EVENTS = 2_000_000
+MOST_TIME_S = 1e7
+MOST_TEXT = 4096
+MOST_PLACE = 1000
+BEGINNING = ("stream", "run")
+CHOOSE = "give a recording of the page or of --record"
 
 
 def page_recording(
@@ -45,10 +54,58 @@ def page_recording(
         lines = [json.dumps(event) for event in events]
         if len(lines) <= 3:
             raise UsageError(f"{path}: nothing is recorded in it")
-        return "\n".join(lines) + "\n"
+        return _checked(path, "\n".join(lines) + "\n")
     if version != STREAM_VERSION:
         raise UsageError(f"{path}: it has version {version} of the stream, tilenca has {STREAM_VERSION}")
-    return text
+    return _checked(path, text)
+
+
+def _checked(path: Path, text: str) -> str:
+    """A recording of the page, without a last line that was cut off; see `page/stream/recording_file.js`.
+
+    Raises:
+        UsageError: the page would not show it.
+    """
+    kept: list[str] = []
+    events = 0
+    lines = io.StringIO(text, newline="\n").readlines()  # raw lines have other ends of line in them
+    for number, line in enumerate(lines, start=1):
+        if line.strip():
+            try:
+                event = json.loads(line)
+            except (ValueError, RecursionError):
+                if number < len(lines) or line.endswith("\n"):
+                    raise UsageError(f"{path}:{number}: is no event; {CHOOSE}") from None
+                warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
+                break
+            if wrong := _wrong_with(event, events):
+                raise UsageError(f"{path}:{number}: {wrong}; {CHOOSE}")
+            events += 1
+            if events > MOST_EVENTS:
+                raise UsageError(f"{path}: it has more than {MOST_EVENTS} events; record a shorter run")
+        kept.append(line)
+    if events < len(BEGINNING):
+        raise UsageError(f"{path}: it does not begin as a recording of the page does; {CHOOSE}")
+    return "".join(kept)
+
+
+def _wrong_with(event: object, before: int) -> str:
+    """What is wrong with the event after so many; "" for nothing."""
+    if not isinstance(event, dict):
+        return "is no event"
+    time_s = event.get("time")
+    if not isinstance(time_s, int | float) or isinstance(time_s, bool) or not 0 <= time_s <= MOST_TIME_S:
+        return f"has no time in 0..{MOST_TIME_S:g} s"
+    if before < len(BEGINNING) and BEGINNING[before] not in event:
+        return "it does not begin as a recording of the page does"
+    if before >= len(BEGINNING) and any(name in event for name in BEGINNING):
+        return "it has more than one run"
+    if any(isinstance(value, str) and len(value) > MOST_TEXT for value in event.values()):
+        return f"has a text of more than {MOST_TEXT} characters"
+    place = event.get("place")
+    if isinstance(place, list) and not all(isinstance(one, int) and abs(one) <= MOST_PLACE for one in place):
+        return f"has a place beyond {MOST_PLACE}"
+    return ""
 
 
 def _version(text: str) -> object | None:

@@ -27,6 +27,10 @@ STEP_SLICE_S = 0.05
 LEAST_STEP_S = 1e-6  # less is a rounding error
 
 
+class EndedError(TilencaError):
+    """A source is over for good; no command can let it go on."""
+
+
 class Source(Protocol):
     """Tiles that run, or ran. One thread uses it."""
 
@@ -45,11 +49,15 @@ class Source(Protocol):
 
         Raises:
             TilencaError: it cannot go on; the next command may let it.
+            EndedError: nothing can, and the run ends.
         """
 
     @property
     def is_idle(self) -> bool:
         """Whether nothing happens until the next command."""
+
+    def abandon(self) -> None:
+        """Called in another thread, once: `advance` ends soon, also where something takes long."""
 
     def close(self) -> None:
         """Frees what it holds."""
@@ -74,6 +82,7 @@ class Session:
         self._make_source, self._deliver, self._tell_end = make_source, deliver, tell_end
         self._commands: queue.Queue[StreamCommand | None] = queue.Queue(MOST_COMMANDS)
         self._ended = threading.Event()
+        self._source: Source | None = None
         self._thread = threading.Thread(target=self._run, name="tilenca-page-run", daemon=True)
         self._thread.start()
 
@@ -88,6 +97,8 @@ class Session:
     def close(self) -> None:
         """Ends the run, and waits for its thread; commands that it has not begun are dropped."""
         self._ended.set()
+        if self._source is not None:  # else it is not made yet, and will not advance
+            self._source.abandon()
         with suppress(queue.Full):
             self._commands.put_nowait(None)  # so that an idle one looks up
         self._thread.join()
@@ -104,7 +115,7 @@ class Session:
             self._tell_end()
 
     def _serve(self) -> None:
-        source = self._make_source()
+        source = self._source = self._make_source()
         try:
             self._deliver(source.begin())
             before_s = time.monotonic()
@@ -115,6 +126,8 @@ class Session:
                 now_s = time.monotonic()
                 try:
                     events = source.advance(min(now_s - before_s, MOST_TICK_S))
+                except EndedError:
+                    raise
                 except TilencaError as error:
                     events = [_refusal(error)]
                 before_s = now_s
@@ -139,6 +152,8 @@ class Session:
                 return
             try:
                 self._take(source, command)
+            except EndedError:
+                raise
             except TilencaError as error:
                 self._deliver([_refusal(error)])
 

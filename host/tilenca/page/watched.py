@@ -4,18 +4,18 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from types import TracebackType
-from typing import Self, TypeAlias
+from typing import Self
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.stdio import warn
 from tilenca.emulator.arrangement import FOR_EVER, STOPPED_UPDATES
-from tilenca.fleet.command import command_all
 from tilenca.fleet.listen import Listener
 from tilenca.fleet.recording import Recorder, format_event
 from tilenca.fleet.state import Event
 from tilenca.page.fleet_teller import FleetTeller
+from tilenca.page.orders import Deliver, Order, Orders
+from tilenca.page.session import EndedError
 from tilenca.protocol import stream_commands as commands
 from tilenca.protocol.commands import ask_command, blink_command, restart_command, set_command
 from tilenca.protocol.stream import StreamEvent, pace_event, refused_event, run_event, stream_event
@@ -26,20 +26,7 @@ POLL_S = 0.05
 LOOK_S = 0.1
 # A tile that speaks and has not said what it runs is asked for it, so often.
 ASK_S = 5.0
-MOST_ORDERS = 64
 REFUSAL = "these are real tiles: only a hand at the table can do that"
-
-Deliver: TypeAlias = Callable[[list[StreamEvent]], None]
-
-
-@dataclass(frozen=True)
-class _Order:
-    """A command for tiles, and whom to answer."""
-
-    name: str
-    line: bytes
-    port: str | None
-    answer: Deliver
 
 
 class Watch:
@@ -67,7 +54,9 @@ class Watch:
         self._teller = FleetTeller(listener.grid, labels, labels_of, self.began_s)
         self._lock = threading.RLock()
         self._listeners: list[Deliver] = []
-        self._orders: list[_Order] = []
+        self._orders = Orders(listener.reader, self._teller.fleet, self._note_done)
+        self._broken = ""
+        self._thawed: dict[str, int] = {}
         self._asked_s: dict[str, float] = {}
         self._looked_s = 0.0
         self._ended = threading.Event()
@@ -90,8 +79,12 @@ class Watch:
 
         Returns:
             All that is known, the stream's first event included.
+
+        Raises:
+            EndedError: the tiles are not read any more.
         """
         with self._lock:
+            self.check()
             self._listeners.append(deliver)
             now_s = self._clock()
             first = stream_event("watched", looks=self._teller.told_looks(), takes=list(TAKES))
@@ -104,21 +97,31 @@ class Watch:
         with self._lock:
             self._listeners.remove(deliver)
 
+    def check(self) -> None:
+        """Raises EndedError with the reason where the tiles are not read any more."""
+        if self._broken:
+            raise EndedError(self._broken)
+
     def order(self, name: str, line: bytes, port: str | None, answer: Deliver) -> None:
         """Sends a command to the tile behind a port, or to all; `answer` hears of what went wrong.
 
         Raises:
-            UsageError: that port is not open, or too many commands wait.
+            UsageError: no port that it goes to is open, or too many commands wait.
+            EndedError: the tiles are not read any more.
         """
         with self._lock:
-            view = self._teller.fleet.tiles.get(port or "")
-            if port is not None and (view is None or not view.is_open):
-                raise UsageError(f"{port}: cannot be reached now{f' ({view.reason})' if view else ''}")
-            if not any(view.is_open for view in self._teller.fleet.tiles.values()):
-                raise UsageError("no tile can be reached now")
-            if len(self._orders) >= MOST_ORDERS:
-                raise UsageError("the tiles have not answered the last commands yet; wait a moment")
-            self._orders.append(_Order(name, line, port, answer))
+            self.check()
+            self._orders.add(Order(name, line, port, answer))
+
+    def updates_of(self, port: str, frozen: bool) -> int:
+        """The setting `updates` that freezes a tile, or lets it go on as it did before it was frozen here."""
+        with self._lock:
+            view = self._teller.fleet.tiles.get(port)
+            if not frozen:
+                return self._thawed.pop(port, FOR_EVER)
+            if view is not None and view.hello is not None and view.hello.updates != STOPPED_UPDATES:
+                self._thawed[port] = view.hello.updates
+            return STOPPED_UPDATES
 
     # --- in its thread ---
 
@@ -138,7 +141,7 @@ class Watch:
     def _break_off(self, reason: str) -> None:
         warn(f"tilenca: {reason}")
         with self._lock:
-            self._tell([refused_event(0.0, reason)])
+            self._broken = reason
 
     def _hear(self, event: Event) -> None:
         with self._lock:
@@ -149,12 +152,13 @@ class Watch:
                 asked_s = self._asked_s.get(event.port, 0.0)
                 if self._clock() - asked_s >= ASK_S:
                     self._ask(event.port)
+            self._orders.take(event)
 
     def _ask(self, port: str) -> None:
         self._asked_s[port] = self._clock()
         if self._listener.reader.write(port, ask_command()):
             with self._lock:
-                self._teller.asked(port)
+                self._teller.asked(port, self._asked_s[port])
 
     def _keep(self, event: Event) -> None:
         if self._record is None:
@@ -183,16 +187,11 @@ class Watch:
 
     def _carry_out(self) -> None:
         with self._lock:
-            orders, self._orders = self._orders, []
-        for order in orders:
-            reader = self._listener.reader
-            ports = [one for one in reader.open if order.port in (None, one)]
-            replies = command_all(reader, dict.fromkeys(ports, order.line), order.name, hear=self._hear)
-            for port, reply in replies.items():
-                if reply.problem:
-                    order.answer([refused_event(0.0, f"{port}: {reply.problem}")])
-                elif order.name == "SET":
-                    self._ask(port)  # so that the page knows what is in force
+            self._orders.go_on()
+
+    def _note_done(self, order: Order, port: str) -> None:
+        if order.name == "SET":
+            self._ask(port)  # so that the page knows what is in force
 
 
 class WatchedSource:
@@ -210,21 +209,26 @@ class WatchedSource:
             self._events += events
 
     def begin(self) -> list[StreamEvent]:
-        """What is here, and all that is known of it."""
+        """What is here, and all that is known of it.
+
+        Raises:
+            EndedError: the tiles are not read any more.
+        """
+        told = self._watch.join(self._hear)
         self._joined = True
-        return self._watch.join(self._hear)
+        return told
 
     def take(self, command: commands.StreamCommand) -> None:
         """Passes on what tiles can be told over USB.
 
         Raises:
             UsageError: they cannot be told that, or not now.
+            EndedError: they are not read any more.
         """
         order = self._watch.order
         match command:
             case commands.Freeze(port, on):
-                line = set_command("updates", STOPPED_UPDATES if on else FOR_EVER)
-                order("SET", line, port, self._hear)
+                order("SET", set_command("updates", self._watch.updates_of(port, on)), port, self._hear)
             case commands.Set(name, value, port):
                 order("SET", set_command(name, value), port, self._hear)
             case commands.Blink(port, seconds):
@@ -237,15 +241,24 @@ class WatchedSource:
                 raise UsageError(REFUSAL)
 
     def advance(self, wall_s: float) -> list[StreamEvent]:
-        """What has come meanwhile."""
+        """What has come meanwhile.
+
+        Raises:
+            EndedError: all has been told, and the tiles are not read any more.
+        """
         with self._lock:
             events, self._events = self._events, []
+        if not events:
+            self._watch.check()
         return events
 
     @property
     def is_idle(self) -> bool:
         """Tiles never are."""
         return False
+
+    def abandon(self) -> None:
+        """Nothing takes long here."""
 
     def close(self) -> None:
         """Leaves the watch, which goes on."""
