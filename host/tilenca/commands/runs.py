@@ -160,8 +160,10 @@ def _are_metrics(metrics: dict[str, Any]) -> bool:
 
 def _is_row(row: object) -> bool:
     match row:
-        case {"key": str(), "name": str(), "target": None | int() | float()}:
-            return row["target"] is None or isinstance(row.get("holds"), bool)
+        case {"key": str(), "name": str(), "target": None}:
+            return True
+        case {"key": str(), "name": str(), "target": int() | float(), "holds": bool()}:
+            return True
     return False
 
 
