@@ -1,6 +1,7 @@
 """Watching emulated tiles: the keys, and what is said of them."""
 
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -95,4 +96,19 @@ def test_on_a_terminal_a_shape_runs_until_a_key_ends_it(key: str, shapes: int, f
             os.write(master, b"q")
         read_until(master, f" of {shapes} shapes right")
         assert process.wait(LIMIT_S) in (0, 1), "where a key ended it, tiles may be on their way"
+    os.close(master)
+
+
+def test_with_standard_input_closed_it_shows_the_tiles_without_keys(firmware: Path) -> None:
+    words = ["emulate", "--elf", str(firmware), "--shape", "1", "--watch", "--bootloader", "none"]
+    words += ["--shapes", str(paths.SHAPES / "digits-3x3.toml")]
+    master, slave = os.openpty()
+    command = shlex.join([sys.executable, "-m", "tilenca.cli", *words])
+    with subprocess.Popen(
+        ["sh", "-c", f"exec {command} <&-"], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave,
+        env=os.environ | {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24"},
+    ) as process:  # fmt: skip
+        os.close(slave)
+        read_until(master, "1 of 1 shapes right")
+        assert process.wait(LIMIT_S) == 0
     os.close(master)

@@ -1,21 +1,35 @@
 """From drawings to tiles in one command."""
 
+import argparse
 import json
 import os
 import re
+import shutil
 import signal
+import threading
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from support.alone import alone
 from support.schemas import fits
 from tilenca.base import paths
+from tilenca.base.errors import UsageError
 from tilenca.cli import main
-from tilenca.commands import make
+from tilenca.commands import emulate, make
+from tilenca.commands.emulate_runs import EmulationResult
 from tilenca.commands.make import STEPS
+from tilenca.commands.train_plan import make_plan
+from tilenca.commands.train_steps import jobs_of
 from tilenca.emulator.greeting import greeting
+from tilenca.model import cost
 from tilenca.model.file import load_model
+from tilenca.training.runner import make_trainer
+from tilenca.views.progress import Tell
 from tilenca.views.steps import Steps
 
 QUICK = ("--recipe", "smoke", "--hidden", "12", "--iterations", "30")
@@ -49,7 +63,7 @@ def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
     assert [run["shape"] for run in document["runs"]] == ["1", "7"]
     assert document["model_id"] == f"{hello.model_id:04X}"
     assert main([*words, "--seed", "9"]) == 2
-    assert "holds a model of another file, recipe, seed or size" in capsys.readouterr().err
+    assert "holds a model of another file, recipe, seed, size or --weights" in capsys.readouterr().err
 
 
 def test_an_interrupted_training_goes_on_with_the_same_command(
@@ -85,7 +99,7 @@ def test_what_ships_and_what_is_there_is_not_overwritten(
     other = tmp_path / "other.toml"
     other.write_text(two_shapes.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     assert main(["make", str(other), "--out", str(trained_model), *QUICK]) == 2
-    assert "holds a model of another file, recipe, seed or size" in capsys.readouterr().err
+    assert "holds a model of another file, recipe, seed, size or --weights" in capsys.readouterr().err
 
 
 def test_bad_drawings_are_refused_before_anything_is_trained(
@@ -109,3 +123,126 @@ def test_a_model_is_the_best_of_the_seeds_that_its_command_names(trained_model: 
     assert make._seeds(load_model(trained_model).metadata) == (5,)
     assert make._seeds({"command": "tilenca train --seed 3 --seeds 2"}) == (3, 4)
     assert make._seeds({}) == ()
+    for odd in ("tilenca train --seed", "tilenca train --seed x --seeds 2", "tilenca 'train"):
+        assert make._seeds({"command": odd}) == ()
+
+
+def _asked(shapes: Path, out: Path, *more: str) -> argparse.Namespace:
+    """The arguments of a training like that of `trained_model`."""
+    words = [str(shapes), "--out", str(out), "--recipe", "smoke", "--hidden", "12", "--seed", "5", *more]
+    args = make._parsed(make, words)
+    make._complete(args)
+    return args
+
+
+def _changed(model: Path, out: Path, **metadata: object) -> Path:
+    """A copy of a model with other metadata."""
+    shutil.copytree(model, out)
+    about = json.loads((out / "model.json").read_text(encoding="utf-8"))
+    about["metadata"] |= metadata
+    (out / "model.json").write_text(json.dumps(about), encoding="utf-8")
+    return out
+
+
+def test_a_model_is_the_one_asked_for_only_with_the_same_initial_weights(
+    two_shapes: Path, trained_model: Path, tmp_path: Path
+) -> None:
+    same = _asked(two_shapes, trained_model)
+    assert make._is_trained(same, make_plan(same))
+    args = _asked(two_shapes, trained_model, "--weights", str(trained_model))
+    with pytest.raises(UsageError, match=r"another .* --weights"):
+        make._is_trained(args, make_plan(args))
+    begun = _changed(trained_model, tmp_path / "begun", initial=f"{load_model(trained_model).model_id:04X}")
+    args = _asked(two_shapes, begun, "--weights", str(trained_model))
+    assert make._is_trained(args, make_plan(args))
+
+
+@pytest.mark.parametrize(
+    "odd", [{"sources": []}, {"sources": [1]}, {"recipe": {}}, {"command": "tilenca '"}], ids=str
+)
+def test_a_model_of_odd_metadata_is_another_one(
+    odd: dict[str, object], two_shapes: Path, trained_model: Path, tmp_path: Path
+) -> None:
+    args = _asked(two_shapes, _changed(trained_model, tmp_path / "odd", **odd))
+    with pytest.raises(UsageError, match="holds a model of another file"):
+        make._is_trained(args, make_plan(args))
+
+
+def test_the_estimate_counts_what_is_left_of_every_seed(two_shapes: Path, tmp_path: Path) -> None:
+    args = _asked(two_shapes, tmp_path, "--seeds", "2", "--jobs", "1")
+    first, second = jobs_of(args, make_plan(args))
+    trainer = make_trainer(first)
+    for _ in range(30):
+        trainer.step()
+    trainer.save(first.checkpoint)
+    args.resume = True
+    first, second = jobs_of(args, make_plan(args))
+    assert [make._left(job) for job in (first, second)] == [10, 40]
+    trainer.ended = True
+    trainer.iteration = 35
+    trainer.save(first.checkpoint)
+    assert make._left(first) == 0, "it ended before its last iteration"
+    trainer.iteration = 40
+    trainer.save(first.checkpoint)
+    assert make._expected_s(args, make_plan(args)) > 0.0, "the second one has all to do"
+    assert make._longest([10, 40, 20, 5], 1) == 75
+    assert make._longest([10, 40, 20, 5], 2) == 40
+    assert make._longest([10, 40], 4) == 40
+
+
+def test_there_is_no_estimate_for_a_cluster(
+    two_shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    args = _asked(two_shapes, tmp_path, "--scheduler", "tcp://nowhere:1")
+    plan, steps = make_plan(args), Steps(STEPS, "train")
+    make._check(args, plan, cost.check(plan.dimensions, len(plan.task.labels)), False, steps)
+    assert steps.left() == ""
+    here = _asked(two_shapes, tmp_path)
+    make._check(here, plan, cost.check(plan.dimensions, len(plan.task.labels)), False, steps)
+    assert "left" in steps.left()
+
+
+class _Impatient(str):
+    """A drawing's name; whoever writes it hears of another drawing meanwhile."""
+
+    meanwhile: Callable[[], None]
+
+    def __format__(self, how: str) -> str:
+        other = threading.Thread(target=self.meanwhile)
+        other.start()
+        other.join(0.2)
+        return str(self)
+
+
+def test_drawings_that_run_at_once_are_told_at_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def emulated(args: argparse.Namespace, shown: Callable[[], AbstractContextManager[Tell]]) -> list[object]:
+        with shown() as tell:
+            name = _Impatient("1")
+            name.meanwhile = lambda: tell("7", 0.5, "")
+            tell(name, 0.5, "")
+        return []
+
+    monkeypatch.setattr(emulate, "emulate_model", emulated)
+    assert make._emulated(argparse.Namespace(), Steps(STEPS, "train")) == []
+
+
+def test_notes_of_an_emulation_are_told_beside_a_document_too(
+    two_shapes: Path, trained_model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    emulate_model = emulate.emulate_model
+
+    def noting(*arguments: Any) -> list[EmulationResult]:
+        return [replace(result, notes=("as it happens",)) for result in emulate_model(*arguments)]
+
+    monkeypatch.setattr(emulate, "emulate_model", noting)
+    out = tmp_path / "mine"
+    shutil.copytree(trained_model, out)
+    words = ["make", str(two_shapes), "--out", str(out), "--recipe", "smoke", "--hidden", "12", "--seed", "5"]
+    with alone("platformio"):
+        assert main([*words, "--json"]) in (0, 1)
+    said = capsys.readouterr()
+    assert "tilenca: as it happens\n" in said.err
+    assert json.loads(said.out)["model"] == str(out)

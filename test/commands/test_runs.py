@@ -1,10 +1,12 @@
 """tilenca runs: what was trained where, and how it went."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 
+from support.schemas import fits
 from support.training import job_of
 from tilenca.base import paths
 from tilenca.cli import main
@@ -84,6 +86,48 @@ def test_a_damaged_training_is_told_and_left_out(
     said = capsys.readouterr()
     assert len(json.loads(said.out)["runs"]) == 1
     assert said.err.startswith(f"note: {folder / 'nothing'}")
+
+
+@pytest.mark.parametrize("metrics", ["[]", '{"rows": [{"key": "drawings"}]}', '{"iterations": "many"}', "{"])
+def test_damaged_metrics_are_told_and_the_others_listed(
+    metrics: str, folder: Path, trained_model: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("model.json", "weights.npz"):
+        shutil.copy(trained_model / name, folder / "nothing")
+    (folder / "nothing" / "metrics.json").write_text(metrics)
+    assert main(["runs", str(folder), "--json"]) == 0
+    said = capsys.readouterr()
+    assert [Path(run["run"]).name for run in json.loads(said.out)["runs"]] == ["begun"]
+    assert said.err.startswith(f"note: {folder / 'nothing' / 'metrics.json'}: ")
+    assert said.err.count("\n") == 1
+
+
+def test_a_history_without_a_loss_is_told_and_the_others_drawn(
+    folder: Path, trained_model: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("model.json", "weights.npz"):
+        shutil.copy(trained_model / name, folder / "nothing")
+    (folder / "nothing" / "history.csv").write_text("iteration,agreement\n1,0.5\n")
+    picture = folder / "runs.svg"
+    assert main(["runs", str(folder / "nothing"), str(trained_model), "--plot", str(picture)]) == 0
+    assert f"note: {folder / 'nothing' / 'history.csv'}: has no loss" in capsys.readouterr().err
+    assert picture.exists()
+
+
+def test_a_training_is_listed_from_its_beginning_and_one_that_left_nothing_is_told(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["runs", str(folder / "nothing"), str(folder / "begun"), "--json"]
+    with noted(folder / "nothing", "tilenca train --out nothing", "smoke", goes_on=False):
+        assert main(words) == 0
+        document = json.loads(capsys.readouterr().out)
+        assert fits("runs", document)
+        (run,) = (run for run in document["runs"] if run["run"] == str(folder / "nothing"))
+        assert (run["state"], run["recipe"], run["iterations"]) == ("running", "smoke", None)
+        assert main(words[:-1]) == 0
+        capsys.readouterr()
+    assert main(words) == 0
+    assert "ended before there was anything to keep" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("place", "message"), [("nothing", "no training there"), ("gone", "no such folder")])

@@ -12,6 +12,7 @@ import torch
 from support.training import SMOKE, job_of, trainer
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
+from tilenca.training.checkpoint import glance
 from tilenca.training.runner import make_trainer
 
 
@@ -28,6 +29,23 @@ def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:5000])
     with pytest.raises(UsageError, match="damaged checkpoint"):
         trainer().load(path)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"history": None}, {"checks": [1]}, {"history": [(1, 2)]}, {"config": {}}, {"iteration": "1"}],
+    ids=str,
+)
+def test_a_glance_at_a_checkpoint_of_another_form_is_refused(
+    changed: dict[str, object], tmp_path: Path
+) -> None:
+    path = tmp_path / "checkpoint.pt"
+    trainer().save(path)
+    assert glance(path)["iteration"] == 0
+    state = torch.load(path, weights_only=True) | changed
+    torch.save({key: value for key, value in state.items() if value is not None}, path)
+    with pytest.raises(UsageError, match="damaged checkpoint"):
+        glance(path)
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """When a model was trained and for how long."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,10 +64,41 @@ def test_a_session_that_was_killed_or_is_elsewhere_does_not_run(tmp_path: Path) 
     with noted(tmp_path, "tilenca train", "quick", goes_on=False):
         (mine,) = sessions_of(tmp_path)
     assert not replace(mine, host="elsewhere").is_running
-    assert not replace(mine, pid=2**22 + 1).is_running, "no process has such a number"
+    again = replace(mine, seconds=None)
+    assert again.is_running
+    for pid in (2**22 + 1, 2**80):
+        assert not replace(again, pid=pid).is_running, "no process has such a number"
+        assert not replace(again, pid=pid, started=None).is_running
 
 
-@pytest.mark.parametrize("text", ["", "{}", '[{"began": "now"}]', "[1]"])
+def test_another_process_that_has_the_number_now_is_not_the_session(tmp_path: Path) -> None:
+    with noted(tmp_path, "tilenca train", "quick", goes_on=False):
+        (mine,) = sessions_of(tmp_path)
+        assert mine.started is not None, "Linux tells it"
+        boot, ticks = mine.started.split()
+        assert not replace(mine, started=f"{boot} {int(ticks) + 1}").is_running
+        assert not replace(mine, started=f"0{boot} {ticks}").is_running
+        assert replace(mine, started=None).is_running, "a file of before tells no time"
+
+
+def _file(**changed: object) -> str:
+    about = {"began": "now", "command": "", "recipe": "quick", "seconds": 1.0, "host": "", "pid": 1}
+    return json.dumps([about | changed])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{}",
+        '[{"began": "now"}]',
+        "[1]",
+        _file(seconds="1"),
+        _file(pid="1"),
+        _file(pid=-1),
+        _file(recipe=3),
+    ],
+)
 def test_a_damaged_file_says_nothing(text: str, tmp_path: Path) -> None:
     (tmp_path / FILE).write_text(text)
     assert sessions_of(tmp_path) == []

@@ -32,7 +32,6 @@ def test_a_training_that_begins_with_weights_of_a_model_goes_on_from_them(tmp_pa
     second = make_trainer(job)
     for name, weights in second.net.arrays().items():
         assert np.array_equal(weights, model.floats[name])
-    assert job.config.as_json()["initial"] == f"{model.model_id:04X}"
     second.save(job.checkpoint)
     with pytest.raises(UsageError, match="another initial"):
         trained_at(job.checkpoint, replace(job.config, initial=None))

@@ -1,5 +1,6 @@
 """Keys of a terminal: what they are called, what they do to a replay, and how the terminal is left."""
 
+import io
 import os
 import pty
 import select
@@ -19,7 +20,7 @@ from tilenca.fleet.recording import format_event
 from tilenca.fleet.state import PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import TileSentence, format_sentence
-from tilenca.views.keyboard import parse_keys
+from tilenca.views.keyboard import our_terminal, parse_keys
 
 LIMIT_S = 60
 SCREENFULS = 40_000
@@ -207,3 +208,21 @@ def test_without_a_terminal_to_type_on_no_keys_are_offered(tmp_path: Path) -> No
         shown += os.read(screen, 65536)
     os.close(screen)
     assert b"space" not in shown
+
+
+def test_there_is_no_keyboard_where_standard_input_is_closed_or_no_terminal(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    assert our_terminal() is None, "closed before the program began"
+    with (tmp_path / "file").open("w+") as file:
+        monkeypatch.setattr(sys, "stdin", file)
+        assert our_terminal() is None
+    assert our_terminal() is None, "closed since"
+    monkeypatch.setattr(sys, "stdin", io.StringIO())
+    assert our_terminal() is None
+    master, slave = pty.openpty()
+    with os.fdopen(slave) as terminal:
+        monkeypatch.setattr(sys, "stdin", terminal)
+        assert our_terminal() == slave
+    os.close(master)

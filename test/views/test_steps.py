@@ -1,14 +1,17 @@
 """Steps that are done one after the other, on a terminal and elsewhere."""
 
 import re
+import threading
 from collections.abc import Sequence
 
 import pytest
+from rich import progress
 from rich.console import Console, RenderableType
 
 from support.terminal import stderr_on_terminal
 from tilenca.training.progress import Progress
 from tilenca.views import steps as module
+from tilenca.views.progress import Bars
 from tilenca.views.steps import LINE_EVERY_S, Step, Steps, show_steps, time_text
 
 NAMES = ("check", "train", "measure")
@@ -136,3 +139,37 @@ def test_the_share_of_a_training_is_that_of_all_its_seeds(clock: Clock) -> None:
 )
 def test_times_to_come_are_rough(seconds: float, text: str) -> None:
     assert time_text(seconds) == text
+
+
+class SlowBars(Bars):
+    """A clock's view of a step is not drawn before the step has ended, if nothing keeps it from ending."""
+
+    def __init__(self) -> None:
+        super().__init__(progress.Progress())
+        self.ticking, self.ended = threading.Event(), threading.Event()
+        self.notes: list[str] = []
+
+    def move(self, name: str, done: float, note: str) -> None:
+        """Waits for the end, for a while."""
+        if threading.current_thread() is not threading.main_thread():
+            self.ticking.set()
+            self.ended.wait(0.3)
+        super().move(name, done, note)
+        self.notes.append(note)
+
+
+def test_the_clock_does_not_draw_a_step_as_at_work_after_its_end() -> None:
+    steps, bars = Steps(NAMES, "train"), SlowBars()
+    for name in NAMES:
+        bars.add(name, name)
+    steps.bars = bars
+    steps.begin("train")
+    clock = threading.Thread(target=steps.tick)
+    clock.start()
+    assert bars.ticking.wait(30)
+    steps.end("train", "40 iterations")
+    bars.ended.set()
+    clock.join(30)
+    assert bars.notes[-1] == "40 iterations"
+    steps.move("train", "39 of 40", 0.9)
+    assert bars.notes[-1] == "40 iterations", "a late word of it"

@@ -97,9 +97,14 @@ def emulate_model(
 def tell_results(args: argparse.Namespace, results: list[EmulationResult], told: Sequence[str] = ()) -> int:
     """Prints the results and what was noted, but for what was told before; returns the exit status."""
     print_results(args, results)
+    tell_notes(results, told)
+    return 0 if all(result.report["all_right"] for result in results) else 1
+
+
+def tell_notes(results: list[EmulationResult], told: Sequence[str] = ()) -> None:
+    """Prints what was noted of the results, but for what was told before, to stderr."""
     for note in sorted({note for result in results for note in result.notes} - set(told)):
         warn(f"tilenca: {note}")
-    return 0 if all(result.report["all_right"] for result in results) else 1
 
 
 def _prepare(args: argparse.Namespace) -> _Run:

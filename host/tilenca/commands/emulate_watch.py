@@ -17,7 +17,7 @@ from tilenca.fleet.recording import Recorder
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.file import Shape, Task
 from tilenca.views.emulated import counted, take_picture
-from tilenca.views.keyboard import Keyboard, is_ours
+from tilenca.views.keyboard import Keyboard, our_terminal
 from tilenca.views.tiles import fitting
 
 SETTLING_S = 0.001
@@ -119,8 +119,8 @@ def watch_all(
     results = []
     with ExitStack() as stack:
         wait: Wait | None = None
-        if console.is_terminal and is_ours(sys.stdin.fileno()):
-            wait = stack.enter_context(Keyboard(sys.stdin.fileno(), sys.stdout.fileno())).wait
+        if console.is_terminal and (keys := our_terminal()) is not None:
+            wait = stack.enter_context(Keyboard(keys, sys.stdout.fileno())).wait
         for shape in shapes:
             started, emulation = time.monotonic(), lay_out(shape)
             with emulation.array, observe(emulation, args) as on_slice:

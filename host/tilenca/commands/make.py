@@ -7,11 +7,12 @@ import shlex
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from textwrap import fill
-from typing import Any
+from threading import Lock
+from typing import TYPE_CHECKING, Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -34,6 +35,9 @@ from tilenca.training.tensorboard import check_tensorboard
 from tilenca.views.abilities import abilities
 from tilenca.views.progress import Tell
 from tilenca.views.steps import Steps, show_steps
+
+if TYPE_CHECKING:
+    from tilenca.training.runner import Job
 
 CHECK, TRAIN, MEASURE, BUILD, EMULATE = STEPS = "check", "train", "measure", "build", "emulate"
 # How long steps take on two cores, in round numbers, until their own pace says it better.
@@ -84,6 +88,7 @@ def run(args: argparse.Namespace) -> int:
     metrics = json.loads((args.out / "metrics.json").read_text(encoding="utf-8"))
     if args.json:
         print(json.dumps(_document(args, model, image, metrics, results)))
+        emulate.tell_notes(results)
         right = all(result.report["all_right"] for result in results)
         return max(status, judged(args.recipe, metrics), 0 if right else 1)
     status = max(status, emulate.tell_results(emulating, results))
@@ -115,11 +120,12 @@ def _check(args: argparse.Namespace, plan: TrainingPlan, fits: cost.Fit, done: b
     if not fits.fits_period:
         warn(str(fits))
     tiles = int(plan.task.sizes.sum()) / MEASURED_TILES
-    steps.expect(BUILD, BUILD_S)
-    steps.expect(EMULATE, EMULATE_S * max(1.0, tiles))
-    if not done:
-        steps.expect(MEASURE, MEASURE_S * max(1.0, tiles) * plan.validation_runs / MEASURED_RUNS)
-        steps.expect(TRAIN, _expected_s(args, plan))
+    if done or args.scheduler is None:  # nobody knows how fast a cluster is
+        steps.expect(BUILD, BUILD_S)
+        steps.expect(EMULATE, EMULATE_S * max(1.0, tiles))
+        if not done:
+            steps.expect(MEASURE, MEASURE_S * max(1.0, tiles) * plan.validation_runs / MEASURED_RUNS)
+            steps.expect(TRAIN, _expected_s(args, plan))
     labels = plan.task.labels
     steps.end(CHECK, f"{len(plan.task)} drawings of {len(labels)} classes: {' '.join(labels)}")
     if done:
@@ -144,10 +150,12 @@ def _emulated(args: argparse.Namespace, steps: Steps) -> list[EmulationResult]:
     @contextmanager
     def shown() -> Iterator[Tell]:
         shares: dict[str, float] = {}
+        lock = Lock()  # several drawings run at once
 
         def tell(name: str, share: float, note: str) -> None:
-            shares[name] = share
-            words = ", ".join(f"{name} {share:.0%}" for name, share in shares.items() if share < 1.0)
+            with lock:
+                shares[name] = share
+                words = ", ".join(f"{name} {share:.0%}" for name, share in shares.items() if share < 1.0)
             steps.move(EMULATE, words)
 
         yield tell
@@ -222,39 +230,70 @@ def _is_trained(args: argparse.Namespace, plan: TrainingPlan) -> bool:
         return False
     model = load_model(args.out)
     metadata = model.metadata
-    there = (
-        metadata.get("sources", [{}])[0].get("sha256"), metadata.get("recipe_name"), _seeds(metadata),
-        metadata.get("recipe", {}).get("iterations"), model.dimensions,
+    there: tuple[object, ...] = ()
+    match metadata:
+        case {"sources": [{"sha256": sha256}], "recipe": {"iterations": iterations}}:
+            there = sha256, metadata.get("recipe_name"), _seeds(metadata), iterations, metadata.get("initial")
+    asked = (
+        hashlib.sha256(args.shapes[0].read_bytes()).hexdigest(), args.recipe, plan.seeds,
+        plan.recipe.iterations, None if plan.initial is None else f"{plan.initial.model_id:04X}",
     )  # fmt: skip
-    sha256 = hashlib.sha256(args.shapes[0].read_bytes()).hexdigest()
-    if there == (sha256, args.recipe, plan.seeds, plan.recipe.iterations, plan.dimensions):
+    if there == asked and model.dimensions == plan.dimensions:
         return True
     raise UsageError(
-        f"{args.out}: holds a model of another file, recipe, seed or size; give another --out, or --force to "
-        "replace it"
+        f"{args.out}: holds a model of another file, recipe, seed, size or --weights; give another --out, or "
+        "--force to replace it"
     )
 
 
 def _seeds(metadata: Mapping[str, Any]) -> tuple[int, ...]:
-    """The seeds of which a model is the best one, by the command that made it."""
-    words = shlex.split(str(metadata.get("command", "")))
-    first, count = (
-        int(words[words.index(option) + 1]) if option in words else 0 for option in ("--seed", "--seeds")
-    )
-    return tuple(range(first, first + count))
+    """The seeds of which a model is the best one, by the command that made it; none where it tells none."""
+    with suppress(ValueError, IndexError):
+        words = shlex.split(str(metadata.get("command", "")))
+        first, count = (int(words[words.index(option) + 1]) for option in ("--seed", "--seeds"))
+        return tuple(range(first, first + count))
+    return ()
 
 
 def _expected_s(args: argparse.Namespace, plan: TrainingPlan) -> float:
-    """How long the training takes at most, from some iterations on this machine."""
+    """How long the training takes at most, from some iterations on this machine.
+
+    Raises:
+        UsageError: a checkpoint is of no use.
+    """
     from tilenca.training.runner import make_trainer
 
-    trainer = make_trainer(jobs_of(args, plan)[0])
-    left = plan.recipe.iterations - trainer.iteration
-    if left <= TIMED_STEPS:
+    jobs = jobs_of(args, plan)
+    left = [_left(job) for job in jobs]
+    if max(left) <= TIMED_STEPS:
         return 0.0
+    trainer = make_trainer(jobs[left.index(max(left))])
     trainer.step()  # the first one takes longer
     began_s = time.perf_counter()
     for _ in range(TIMED_STEPS):
         trainer.step()
     each_s = (time.perf_counter() - began_s) / TIMED_STEPS
-    return each_s * left * -(-len(plan.seeds) // at_once(args, plan))
+    return each_s * _longest(left, at_once(args, plan))
+
+
+def _left(job: "Job") -> int:
+    """How many iterations there are still to do.
+
+    Raises:
+        UsageError: the checkpoint is of no use.
+    """
+    from tilenca.training.trainer import trained_at
+
+    iterations = job.config.recipe.iterations
+    if not (job.resume and job.checkpoint.exists()):
+        return iterations
+    trained = trained_at(job.checkpoint, job.config)
+    return 0 if trained.done else iterations - trained.iteration
+
+
+def _longest(jobs: Sequence[int], at_once: int) -> int:
+    """When the last job ends, if so many run at once and each begins as soon as there is room."""
+    ends = [0] * at_once
+    for job in jobs:
+        ends[ends.index(min(ends))] += job
+    return max(ends)

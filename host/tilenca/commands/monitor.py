@@ -23,7 +23,7 @@ from tilenca.fleet.state import Event, Fleet
 from tilenca.views.fleet_live import LiveView
 from tilenca.views.fleet_log import EventLines, JsonLines, NewsLines
 from tilenca.views.fleet_table import summary
-from tilenca.views.keyboard import Keyboard, is_ours
+from tilenca.views.keyboard import Keyboard, our_terminal
 
 # The time, and what has come by then.
 Events: TypeAlias = Iterator[tuple[float, list[Event]]]
@@ -145,9 +145,9 @@ def _display(
         return EventLines(start_s)
     about = f"replay of {args.replay}" if player else ""
     display = LiveView(fleet, grid, console, args.table, about)
-    if player and sys.stdin and is_ours(sys.stdin.fileno()):
+    if player and (keys := our_terminal()) is not None:
         with held_back():  # a view that takes the terminal must give it back
-            player.wait = stack.enter_context(Keyboard(sys.stdin.fileno(), sys.stdout.fileno())).wait
+            player.wait = stack.enter_context(Keyboard(keys, sys.stdout.fileno())).wait
         if args.replay.is_file():  # what comes through a pipe comes once
             player.begin_again = display.begin_again
         display.footer = lambda: f"{player.status}; {player.keys}"

@@ -3,17 +3,17 @@
 import argparse
 import json
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tilenca.base.errors import UsageError
 from tilenca.base.stdio import warn
 from tilenca.commands.plot import HISTORY_FILE, read_history
 from tilenca.model.file import checkpoints, load_model
-from tilenca.training.sessions import Session, sessions_of
+from tilenca.training.sessions import FILE, Session, sessions_of
 from tilenca.views.table import table
 
+T = TypeVar("T")
 Rows = list[list[float | None]]
 DONE, RESUMABLE, RUNNING = "done", "resumable", "running"
 MODELS = Path("models")
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
         from tilenca.views.plots import plot_runs
 
         names = _names([folder for folder, _ in found])
-        curves = {f"{names[folder]}: {_title(about)}": _history(folder) for folder, about in found}
+        curves = {f"{names[folder]}: {_title(about)}": _curve(folder) for folder, about in found}
         plot_runs(curves, args.plot)
     runs = [about for _, about in found]
     if args.json:
@@ -72,14 +72,23 @@ def _folders(roots: list[Path]) -> Iterator[Path]:
     """The folders at or below the roots in which something was trained, sorted."""
     marks = {path.parent for root in roots for path in root.rglob("model.json")}
     marks |= {path.parent for root in roots for path in root.rglob("checkpoint-*.pt")}
+    marks |= {path.parent for root in roots for path in root.rglob(FILE)}
     yield from sorted(marks)
 
 
 def _about(folder: Path) -> dict[str, Any] | None:
     """One training as plain values; None: the folder has none, or a damaged one, which is told."""
     sessions = sessions_of(folder)
+    running = any(one.is_running for one in sessions)
     try:
-        about = _unfinished(folder) if checkpoints(folder) else _finished(folder)
+        if checkpoints(folder):
+            about = _unfinished(folder)
+        elif (folder / "model.json").exists():
+            about = _finished(folder)
+        elif running:
+            about = _begun()
+        else:
+            raise UsageError(f"{folder}: a training there ended before there was anything to keep")
     except UsageError as error:
         warn(f"note: {error}")
         return None
@@ -88,7 +97,7 @@ def _about(folder: Path) -> dict[str, Any] | None:
     return {
         "run": str(folder),
         **about,
-        "state": RUNNING if state != DONE and any(one.is_running for one in sessions) else state,
+        "state": RUNNING if state != DONE and running else state,
         "recipe": _recipe(about["recipe"], sessions),
         "seconds": round(sum(times), 1) if times else None,
         "began": sessions[0].began if sessions else None,
@@ -102,23 +111,66 @@ def _recipe(known: str | None, sessions: list[Session]) -> str | None:
 
 def _finished(folder: Path) -> dict[str, Any]:
     model = load_model(folder)
-    metadata, metrics = model.metadata, {}
-    with suppress(OSError, ValueError):
-        metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    metrics = _metrics(folder / "metrics.json")
+    metadata = model.metadata
+    recipe, seed = _if_a(str, metadata.get("recipe_name")), _if_a(int, metadata.get("seed"))
+    plan = _if_a(dict, metadata.get("recipe")) or {}
     aimed = [row for row in metrics.get("rows", []) if row["target"] is not None]
     return {
         "state": DONE,
         "model_id": f"{model.model_id:04X}",
         "labels": list(model.labels),
-        "recipe": metadata.get("recipe_name"),
-        "seeds": [metadata["seed"]] if "seed" in metadata else [],
+        "recipe": recipe,
+        "seeds": [] if seed is None else [seed],
         "iterations": metrics.get("iterations"),
-        "planned": metadata.get("recipe", {}).get("iterations"),
+        "planned": _if_a(int, plan.get("iterations")),
         "targets": len(aimed),
         "held": sum(row["holds"] for row in aimed),
         "missed": [{"key": row["key"], "name": row["name"]} for row in aimed if not row["holds"]],
         "shortfall": metrics.get("shortfall"),
     }
+
+
+def _if_a(kind: type[T], value: object) -> T | None:
+    return value if isinstance(value, kind) else None
+
+
+def _metrics(path: Path) -> dict[str, Any]:
+    """The metrics of a model; empty where there are none.
+
+    Raises:
+        UsageError: they are damaged.
+    """
+    try:
+        metrics = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{path}: cannot be read ({error}); train again") from error
+    if not isinstance(metrics, dict) or not _are_metrics(metrics):
+        raise UsageError(f"{path}: not the metrics of a model; train again")
+    return metrics
+
+
+def _are_metrics(metrics: dict[str, Any]) -> bool:
+    numbers, rows = (metrics.get("iterations"), metrics.get("shortfall")), metrics.get("rows", [])
+    known = all(number is None or isinstance(number, int | float) for number in numbers)
+    return known and isinstance(rows, list) and all(map(_is_row, rows))
+
+
+def _is_row(row: object) -> bool:
+    match row:
+        case {"key": str(), "name": str(), "target": None}:
+            return True
+        case {"key": str(), "name": str(), "target": int() | float(), "holds": bool()}:
+            return True
+    return False
+
+
+def _begun() -> dict[str, Any]:
+    """A training before its first checkpoint."""
+    nothing = ("model_id", "recipe", "iterations", "planned", "targets", "held", "shortfall")
+    return {"state": RUNNING, "labels": [], "seeds": [], "missed": [], **dict.fromkeys(nothing)}
 
 
 def _unfinished(folder: Path) -> dict[str, Any]:
@@ -142,6 +194,15 @@ def _unfinished(folder: Path) -> dict[str, Any]:
     }
 
 
+def _curve(folder: Path) -> Rows:
+    """The history of a training; none where it is damaged, which is told."""
+    try:
+        return _history(folder)
+    except UsageError as error:
+        warn(f"note: {error}")
+        return []
+
+
 def _history(folder: Path) -> Rows:
     """(iteration, loss, agreement) of a training; of several unfinished seeds those of the first."""
     if unfinished := checkpoints(folder):
@@ -151,6 +212,8 @@ def _history(folder: Path) -> Rows:
     if not (folder / HISTORY_FILE).exists():
         return []
     columns, rows = read_history(folder / HISTORY_FILE)
+    if missing := {"iteration", "loss", "agreement"}.difference(columns):
+        raise UsageError(f"{folder / HISTORY_FILE}: has no {' and no '.join(sorted(missing))}; train again")
     places = [columns.index(name) for name in ("iteration", "loss", "agreement")]
     return [[row[place] for place in places] for row in rows]
 

@@ -22,7 +22,7 @@ from tilenca.model.file import DEFAULT_CHANNELS, Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipes import aims_of, find_recipe
 from tilenca.training.sessions import noted
-from tilenca.training.tensorboard import event_files
+from tilenca.training.tensorboard import event_files, move_events
 from tilenca.views.training import TrainingViews
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingVie
     metadata = _metadata(args)  # the commit may change while the training runs
     with noted(args.out, training_command(args, str), args.recipe, args.resume) as session:
         try:
-            jobs = _train(args, plan, views)
+            jobs = _train(args, plan, views, session.began[-1])
         except (InterruptedRunError, KeyboardInterrupt) as error:
             raise _interrupted(args, str(error) or "while training", go_on) from None
         seed = SUITE_SEED + args.seed
@@ -78,21 +78,23 @@ def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingVie
 
         where = keep(args.out, result)
         session.moved(where)
+        if where != args.out:
+            move_events(args.out, where, session.began)
     _draw_history(where, result)
     for path in checkpoints(args.out):
         path.unlink()
     return NewModel(where, result.model, result.metrics)
 
 
-def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews) -> "list[Job]":
-    """Trains all seeds; returns their jobs, whose checkpoints hold the results."""
+def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, began: str) -> "list[Job]":
+    """Trains all seeds in a session that `began` then; returns their jobs, whose checkpoints hold results."""
     from tilenca.training.runner import train_side_by_side
 
     jobs = jobs_of(args, plan)
     with ExitStack() as stack:
         tell = stack.enter_context(views.training(plan.seeds, plan.recipe.iterations))
         if args.tensorboard:
-            tell = stack.enter_context(event_files(args.out, tell))
+            tell = stack.enter_context(event_files(args.out, began, tell))
         if args.scheduler is None:
             failures = train_side_by_side(jobs, at_once(args, plan), tell)
         else:
@@ -112,8 +114,8 @@ def at_once(args: argparse.Namespace, plan: TrainingPlan) -> int:
 def jobs_of(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
     """The seeds' trainings."""
     from tilenca.base.processors import processors
+    from tilenca.training.config import Config
     from tilenca.training.runner import Job
-    from tilenca.training.trainer import Config
 
     threads = max(1, processors() // at_once(args, plan)) if args.scheduler is None else 1
     configs = [

@@ -39,8 +39,22 @@ def glance(path: Path) -> State:
     Raises:
         UsageError: there is none, or it is damaged.
     """
-    state = _load(path, torch.device("cpu"))
-    return {name: state[name] for name in ("config", "iteration", "history", "checks")}
+    match _load(path, torch.device("cpu")):
+        case {
+            "config": {"labels": [*labels], "seed": int(), "recipe": {"iterations": int()}} as config,
+            "iteration": int() as iteration,
+            "history": [*history],
+            "checks": [*checks],
+        } if all(isinstance(label, str) for label in labels) and _are_numbers(history, checks):
+            return {"config": config, "iteration": iteration, "history": history, "checks": checks}
+    raise UsageError(f"{path}: damaged checkpoint (of another form); train with --force to start anew")
+
+
+def _are_numbers(history: list[Any], checks: list[Any]) -> bool:
+    """Whether rows are (iteration, loss, agreement), and those of measurements begin with two numbers."""
+    rows = [tuple(row) if isinstance(row, list | tuple) else () for row in history]
+    rows += [(*row[:2], 0) if isinstance(row, list | tuple) else () for row in checks]
+    return all(len(row) == 3 and all(isinstance(value, int | float) for value in row) for row in rows)
 
 
 def read_checkpoint(path: Path, config: State, device: torch.device) -> State:

@@ -23,11 +23,12 @@ from tilenca.shapes.batch import Drawings
 from tilenca.shapes.sizes import Sizes
 from tilenca.shapes.variant import CHOOSING
 from tilenca.simulator.engine import FastEngine
+from tilenca.training.config import Config
 from tilenca.training.curriculum import build
 from tilenca.training.progress import Progress, Tell
 from tilenca.training.recipes import aims_of, trains_for
 from tilenca.training.rollout import use_threads
-from tilenca.training.trainer import Config, Trained, Trainer, model_of
+from tilenca.training.trainer import Trained, Trainer, model_of
 
 CHECKPOINT_EVERY_S = 45.0
 TELL_EVERY_S = 0.2

@@ -18,6 +18,7 @@ from tilenca.base.errors import TilencaError
 from tilenca.base.whole_file import write_whole
 
 FILE = "sessions.json"
+STARTED = 19  # of the fields that follow the name in /proc/PID/stat
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,10 @@ class Session:
         recipe: its name.
         seconds: how long it took; None: it has not ended, or was killed.
         host, pid: of the process.
+        started: when the process began, as its machine tells it; None: it does not.
+
+    Raises:
+        TypeError: a value is of another type, which a damaged file may hold.
     """
 
     began: str
@@ -38,19 +43,43 @@ class Session:
     seconds: float | None
     host: str
     pid: int
+    started: str | None = None
+
+    def __post_init__(self) -> None:
+        texts = (self.began, self.command, self.recipe, self.host)
+        right = all(isinstance(text, str) for text in texts)
+        right &= self.seconds is None or type(self.seconds) in (int, float)
+        right &= self.started is None or isinstance(self.started, str)
+        if not (right and type(self.pid) is int and self.pid > 0):
+            raise TypeError(f"not a session: {self}")
 
     @property
     def is_running(self) -> bool:
         """Whether it still runs on this machine."""
         if self.seconds is not None or self.host != socket.gethostname():
             return False
+        if self.started is not None:
+            return self.started == _started(self.pid)
         try:
             os.kill(self.pid, 0)
-        except ProcessLookupError:
+        except (ProcessLookupError, OverflowError):
             return False
         except PermissionError:
             pass
         return True
+
+
+def _started(pid: int) -> str | None:
+    """When a process began, in its machine's own words: the boot, and the ticks since; None: nobody knows.
+
+    A number alone may be another process's by now, after a reboot above all.
+    """
+    try:
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
+        about = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    return f"{boot} {about.rpartition(')')[2].split()[STARTED]}"
 
 
 def sessions_of(folder: Path) -> list[Session]:
@@ -66,8 +95,13 @@ class Noted:
     def __init__(self, folder: Path, mine: Session, goes_on: bool) -> None:
         self._folder, self._mine, self._before = folder, mine, sessions_of(folder)
         self._earlier = self._before if goes_on else []
-        self._started = time.monotonic()
+        self._since_s = time.monotonic()
         _write(folder, [*self._earlier, mine])
+
+    @property
+    def began(self) -> list[str]:
+        """When the sessions of this training began, this one the last."""
+        return [session.began for session in (*self._earlier, self._mine)]
 
     def moved(self, folder: Path) -> None:
         """The model lies in another folder: the one that was there has its own sessions back."""
@@ -77,7 +111,7 @@ class Noted:
 
     def end(self) -> None:
         """Notes how long it took."""
-        ended = replace(self._mine, seconds=round(time.monotonic() - self._started, 1))
+        ended = replace(self._mine, seconds=round(time.monotonic() - self._since_s, 1))
         _write(self._folder, [*self._earlier, ended])
 
 
@@ -95,7 +129,9 @@ def noted(folder: Path, command: str, recipe: str, goes_on: bool) -> Iterator[No
         TilencaError: the folder cannot be written.
     """
     began = datetime.now(UTC).isoformat(timespec="seconds")
-    session = Noted(folder, Session(began, command, recipe, None, socket.gethostname(), os.getpid()), goes_on)
+    pid = os.getpid()
+    mine = Session(began, command, recipe, None, socket.gethostname(), pid, _started(pid))
+    session = Noted(folder, mine, goes_on)
     try:
         yield session
     except BaseException:

@@ -1,16 +1,13 @@
 """TensorBoard's event files of a training, where that package is there; nothing else needs it."""
 
-from collections.abc import Iterator
+import shutil
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tilenca.base.errors import UsageError
 from tilenca.training.progress import Progress, Tell
-
-if TYPE_CHECKING:
-    pass
 
 FOLDER = "tensorboard"
 
@@ -26,11 +23,13 @@ def check_tensorboard() -> None:
 
 
 @contextmanager
-def event_files(folder: Path, tell: Tell) -> Iterator[Tell]:
-    """Passes progress on, and writes it into event files below `folder`, each seed in a folder of its own.
+def event_files(folder: Path, began: str, tell: Tell) -> Iterator[Tell]:
+    """Passes progress on, and writes it into event files below `folder`.
+
+    Each seed has a folder, and in it each session, by when it `began`, see `Session`.
 
     Loss and agreement come with each report, the targets that are held and the shortfall of the others with
-    each measurement. A run that goes on replaces what an interrupted one wrote after its checkpoint.
+    each measurement.
     """
     from torch.utils.tensorboard import SummaryWriter
 
@@ -41,7 +40,8 @@ def event_files(folder: Path, tell: Tell) -> Iterator[Tell]:
         tell(news)
         at = news.iteration
         if news.seed not in writers:
-            writers[news.seed] = SummaryWriter(str(folder / FOLDER / f"seed-{news.seed}"), purge_step=at)
+            place = folder / FOLDER / f"seed-{news.seed}" / _name(began)
+            writers[news.seed] = SummaryWriter(str(place))
         writer = writers[news.seed]
         writer.add_scalar("loss per tile", news.loss, at)
         writer.add_scalar("share of drawings with every tile right", news.agreement, at)
@@ -56,3 +56,17 @@ def event_files(folder: Path, tell: Tell) -> Iterator[Tell]:
     finally:
         for writer in writers.values():
             writer.close()
+
+
+def move_events(folder: Path, to: Path, began: Sequence[str]) -> None:
+    """Moves the event files of the sessions that `began` then to another model's folder."""
+    for name in map(_name, began):
+        for place in (folder / FOLDER).glob(f"seed-*/{name}"):
+            target = to / FOLDER / place.parent.name
+            target.mkdir(parents=True, exist_ok=True)
+            shutil.move(place, target / name)
+
+
+def _name(began: str) -> str:
+    """A session's time as the name of a folder, on any system."""
+    return began.removesuffix("+00:00").replace(":", "-")

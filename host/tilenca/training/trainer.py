@@ -5,9 +5,8 @@ generator, whose state is part of a checkpoint, so a resumed run ends with the b
 """
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -15,56 +14,21 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from tilenca.base.errors import TilencaError
-from tilenca.model.file import Dimensions, Model
+from tilenca.model.file import Model
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
+from tilenca.training.config import Config
 from tilenca.training.curriculum import Curriculum
 from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
-from tilenca.training.recipes import Recipe
 from tilenca.training.rollout import rollout
 from tilenca.training.update_schedule import draw_schedule
 
 TILES_PER_ROLLOUT, LONGEST_ROLLOUT = 16, 2.0
 HISTORY_ROWS, HISTORY_EVERY = 200, 100  # least number of rows, and most iterations per row
-
-
-@dataclass(frozen=True)
-class Config:
-    """Everything that decides the trained weights.
-
-    Attributes:
-        recipe: how to train.
-        dimensions: the widths of the network.
-        seed: of all random numbers.
-        labels: the classes.
-        sources: the shape files and their checksums.
-        initial: the model whose real weights training begins with, of these widths and labels; None: random
-            ones.
-    """
-
-    recipe: Recipe
-    dimensions: Dimensions
-    seed: int
-    labels: tuple[str, ...]
-    sources: tuple[dict[str, str], ...]
-    initial: Model | None = None
-
-    def as_json(self) -> dict[str, Any]:
-        """Plain values, as JSON reads them back; without settings that do not touch the weights."""
-        recipe = {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self.recipe).items()}
-        del recipe["validation_runs"]
-        return {
-            "recipe": recipe,
-            "dimensions": asdict(self.dimensions),
-            "seed": self.seed,
-            "labels": list(self.labels),
-            "sources": list(self.sources),
-            "initial": None if self.initial is None else f"{self.initial.model_id:04X}",
-        }
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import os
 import re
 import select
 import signal
+import sys
 import termios
 import time
 import tty
@@ -43,6 +44,17 @@ def is_ours(descriptor: int) -> bool:
         return os.tcgetpgrp(descriptor) == os.getpgrp()
     except OSError:  # a terminal without jobs
         return True
+
+
+def our_terminal() -> int | None:
+    """The descriptor of standard input where its keys are for this program; None where it is closed, too."""
+    if sys.stdin is None or sys.stdin.closed:
+        return None
+    try:
+        descriptor = sys.stdin.fileno()
+    except OSError:  # something else stands for it
+        return None
+    return descriptor if is_ours(descriptor) else None
 
 
 class Keyboard:

@@ -80,7 +80,8 @@ class Steps:
         self._at_most = at_most
         self._now: Step | None = None
         self._said_s = time.monotonic()
-        self._lock = threading.Lock()
+        # Whoever draws asks `above` and `below` while this is held, so that those must not wait for it.
+        self._lock = threading.RLock()
         self._curve: Curve | None = None
         self.bars: Bars | None = None  # where there is a terminal
 
@@ -93,35 +94,40 @@ class Steps:
     def begin(self, name: str) -> None:
         """The step begins."""
         step = self._steps[name]
-        step.began_s = time.monotonic()
-        self._now = step
-        if self.bars is not None:
-            self.bars.move(name, 0.0, "")
-            self.bars.draw()
-        else:
-            left = self.left()
-            self._say(f"{self._title(step)}{left and f'; {left}'}")
+        with self._lock:
+            step.began_s = time.monotonic()
+            self._now = step
+            if self.bars is not None:
+                self.bars.move(name, 0.0, "")
+                self.bars.draw()
+            else:
+                left = self.left()
+                self._say(f"{self._title(step)}{left and f'; {left}'}")
 
     def move(self, name: str, note: str, share: float | None = None) -> None:
         """How far the step is; `share`: of it that is done (0..1), None where nobody knows."""
         step = self._steps[name]
-        if share is not None and step.share is None:
-            step.first = share
-        step.note, step.share = note, share
-        self.tick()
+        with self._lock:
+            if step is not self._now:
+                return  # a late word of a step that has ended
+            if share is not None and step.share is None:
+                step.first = share
+            step.note, step.share = note, share
+            self.tick()
 
     def end(self, name: str, note: str) -> None:
         """The step is done, whether it had begun or not; `note`: its result."""
         step = self._steps[name]
-        now_s = step.ended_s = time.monotonic()
-        step.note, self._now, self._curve = note, None, None
-        if self.bars is not None:
-            self.bars.move(name, 1.0, note)
-            self.bars.stop(name)
-            self.bars.draw()
-        else:
-            took = "" if step.began_s is None else f" done in {_clock(now_s - step.began_s)}"
-            self._say(f"{self._title(step)}{took}: {note}")
+        with self._lock:
+            now_s = step.ended_s = time.monotonic()
+            step.note, self._now, self._curve = note, None, None
+            if self.bars is not None:
+                self.bars.move(name, 1.0, note)
+                self.bars.stop(name)
+                self.bars.draw()
+            else:
+                took = "" if step.began_s is None else f" done in {_clock(now_s - step.began_s)}"
+                self._say(f"{self._title(step)}{took}: {note}")
 
     def left(self) -> str:
         """How long all of it will still take, in words; nothing where nobody knows yet."""
@@ -136,15 +142,13 @@ class Steps:
 
     def tick(self) -> None:
         """Draws the step at work, or without a terminal says a line where a minute has passed."""
-        step = self._now
-        if step is None:
-            return
-        now_s = time.monotonic()
-        if self.bars is not None:
-            self.bars.move(step.name, step.done(now_s), f"about {time_text(step.left_s(now_s))} left")
-            return
         with self._lock:
-            if now_s - self._said_s >= LINE_EVERY_S:
+            step, now_s = self._now, time.monotonic()
+            if step is None:
+                return
+            if self.bars is not None:
+                self.bars.move(step.name, step.done(now_s), f"about {time_text(step.left_s(now_s))} left")
+            elif now_s - self._said_s >= LINE_EVERY_S:
                 words = (self._title(step) + (f": {step.note}" if step.note else ""), self.left())
                 self._say("; ".join(filter(None, words)))
 

@@ -18,6 +18,7 @@ TILE_WIDTH = 5
 SHAPE_GAP = "  "
 # A housing of its own, so that a digit can be read on any terminal's background.
 HOUSING = "on rgb(28,28,28)"
+DARK = "rgb(60,60,60)"
 FRAME = f"rgb(88,88,88) {HOUSING}"
 
 
@@ -40,7 +41,7 @@ def led_style(duty: Duty) -> str:
 def screen_style(duty: Duty) -> str:
     """The LED's colour alone; a dark grey where it is off."""
     if not any(duty):
-        return "rgb(60,60,60)"
+        return DARK
     red, green, blue = (round(255 * part) for part in screen_colour(duty))
     return f"rgb({red},{green},{blue})"
 
