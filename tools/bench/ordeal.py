@@ -159,8 +159,8 @@ class Ordeal:
         self.updates.pop(self.places[cell], None)
 
     def _a_cable(self) -> tuple[int, int]:
-        row, column = self.draw.randrange(ROWS - 1), self.draw.randrange(COLUMNS - 1)
-        return self.places[row, column], self.draw.choice((EAST, SOUTH))
+        cell = self.draw.randrange(ROWS - 1), self.draw.randrange(COLUMNS - 1)
+        return self.places[cell], self.draw.choice((EAST, SOUTH))
 
     def spoil_a_cable(self) -> None:
         """Lets a cable lose bytes and invert bits."""
@@ -283,10 +283,9 @@ def _line(table: Ordeal) -> str:
 def main() -> int:
     """Prints what was found; status 1 if anything was broken."""
     parser = argparse.ArgumentParser(description="Twenty emulated tiles through everything that can happen.")
-    parser.add_argument(
-        "--seconds", type=float, default=600.0, help="of the tiles' time (default: %(default)s)"
-    )
-    parser.add_argument("--seed", type=int, default=1, help="of all that happens (default: %(default)s)")
+    add = parser.add_argument
+    add("--seconds", type=float, default=600.0, help="of the tiles' time (default: %(default)s)")
+    add("--seed", type=int, default=1, help="of all that happens (default: %(default)s)")
     args = parser.parse_args()
     found = ordeal(paths.FIRMWARE_ELF, args.seconds, args.seed, processors(), progress=True)
     for kind, times in sorted(found.deeds.items()):

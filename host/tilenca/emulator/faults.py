@@ -260,10 +260,9 @@ class Faults:
 
     def plug(self, tile: int, on: bool) -> None:
         """Takes a tile out, with its cables and its power, or plugs it in again."""
-        for tile_a, side_a, tile_b, side_b in self.links:
-            for mine, end in ((tile_a, (tile_a, side_a)), (tile_b, (tile_b, side_b))):
-                if mine == tile:
-                    self.connect(end, on)
+        for end in sorted(end for link in self.links for end in (link[:2], link[2:])):
+            if end[0] == tile:
+                self.connect(end, on)
         self._power(tile, on)
 
     def _power(self, tile: int, on: bool) -> None:
@@ -274,9 +273,7 @@ class Faults:
     # --- where they do it ---
 
     def _tiles(self, spec: FaultSpec) -> list[int]:
-        if not spec.where:
-            return list(range(len(self.array)))
-        return [self._tile(spec, spec.where)]
+        return [self._tile(spec, spec.where)] if spec.where else list(range(len(self.array)))
 
     def _tile(self, spec: FaultSpec, text: str) -> int:
         if not text.isdecimal() or not 1 <= int(text) <= len(self.array):
@@ -288,7 +285,7 @@ class Faults:
         both += [(b, other, a, side) for a, side, b, other in self.links]
         one, dash, two = spec.where.partition("-")
         if not spec.where:
-            ends = [(tile, side) for tile, side, _, _ in both]
+            ends = [link[:2] for link in both]
         elif dash:
             pair = {self._tile(spec, one), self._tile(spec, two)}
             ends = [(tile, side) for tile, side, other, _ in both if {tile, other} == pair]

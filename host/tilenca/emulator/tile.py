@@ -72,7 +72,7 @@ class EmulatedTile:
     def sleep_share(self) -> float:
         """Share of its time (0..1) that the tile has slept so far."""
         total, asleep = self.cycles
-        return asleep / total if total else 0.0
+        return asleep / max(total, 1)
 
     @property
     def stack(self) -> Stack:
@@ -173,10 +173,7 @@ class EmulatedTile:
         self._call("tile_set_analog", channel, value)
 
     def set_supply(self, volts: float) -> None:
-        """The supply voltage, 1.8 to 5.5 V, as the ADC sees it beside the bandgap's 1.1 V.
-
-        The chip runs on at any; `reset(ResetCause.BROWN_OUT)` is what its brown-out detector does.
-        """
+        """The supply, 1.8 to 5.5 V, as the ADC sees it beside the bandgap; the chip runs on at any."""
         self._call("tile_set_supply", volts)
 
     def set_adc_noise(self, deviation: float, seed: int = 0) -> None:
@@ -192,10 +189,7 @@ class EmulatedTile:
         self._call("tile_set_spi_loopback", on)
 
     def push_edge(self, port: str, bit: int, cycle: int, level: bool) -> None:
-        """Lets an input change at a future cycle of the tile's own clock; not for pins that a link drives.
-
-        From the first call on somebody drives the pin; it is high before that change.
-        """
+        """Lets an input change at a future cycle of the tile's own clock; it is driven, high, from now on."""
         self._call("tile_push_edge", pin_port(port), bit, cycle, level)
 
     def write_memory(self, address: int, data: bytes) -> None:
@@ -224,10 +218,9 @@ class EmulatedTile:
 
     def marks(self) -> list[Mark]:
         """The notes since the last call. Cycles between two marks are the difference of theirs."""
-        room = RECEIVE_CHUNK
-        places, cycles = new("uint32_t[]", room), new("uint64_t[]", room)
+        places, cycles = new("uint32_t[]", RECEIVE_CHUNK), new("uint64_t[]", RECEIVE_CHUNK)
         found: list[Mark] = []
-        while count := self._call("tile_marks", places, cycles, room):
+        while count := self._call("tile_marks", places, cycles, RECEIVE_CHUNK):
             found += [Mark(self._array.function_at(places[i]), places[i], cycles[i]) for i in range(count)]
         return found
 
@@ -243,8 +236,7 @@ class EmulatedTile:
             baud: bits per second; 0: as the program has set the USART of that pin, if it has one.
             receiving: the wire that arrives instead of the one that leaves.
         """
-        port, bit = self.side_pin(side, receiving)
-        return WireTap(lambda: self._array.handle, self.index, port, bit, baud)
+        return self.tap_pin(*self.side_pin(side, receiving), baud)
 
     def tap_pin(self, port: str, bit: int, baud: float = 0.0) -> WireTap:
         """Like `tap`, on any pin."""
