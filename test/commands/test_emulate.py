@@ -238,7 +238,7 @@ def test_the_shapes_are_those_of_the_firmwares_model(
     assert (status, "no firmware was built of it" in err) == (4, True)
     hello = greeting(FIRMWARE_ELF)
     assert hello is not None
-    says = replace(hello, model_id=0x90E8)
+    says = replace(hello, model_id=0xE27F)
     monkeypatch.setattr("tilenca.commands.emulate.greeting", lambda elf: says)
     status, _, err = emulate(capsys, "--shape", "nothing")
     assert status == 2

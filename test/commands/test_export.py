@@ -273,7 +273,7 @@ def test_a_build_beside_the_model_leaves_the_projects_firmware_alone(
     model_directory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     built: list[Path] = []
-    monkeypatch.setattr("tilenca.commands.own_firmware.build", built.append)
+    monkeypatch.setattr("tilenca.commands.own_firmware.build", lambda out, *_: built.append(out))
     before = contents(paths.FIRMWARE)
     assert run("--model", model_directory, "--build", "--json") == 0
     report = json.loads(capsys.readouterr().out)

@@ -98,5 +98,5 @@ def test_an_unknown_id_has_no_model_and_a_folder_may_be_asked_first(tmp_path: Pa
 
 def test_a_model_without_a_dash_says_so() -> None:
     assert without_a_dash(DIGITS) is None
-    hexadecimal = load_model(paths.MODELS / "hex")
-    assert "has no class for other drawings" in str(without_a_dash(hexadecimal))
+    letters = load_model(paths.MODELS / "letters")
+    assert "has no class for other drawings" in str(without_a_dash(letters))

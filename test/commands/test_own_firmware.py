@@ -33,7 +33,7 @@ def test_sources_that_are_current_stay_and_others_are_brought_up_to_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     built: list[Path] = []
-    monkeypatch.setattr(own_firmware, "build", lambda out, quiet: built.append(out))
+    monkeypatch.setattr(own_firmware, "build", lambda out, *_: built.append(out))
     model = load_model(paths.MODELS / "hex")
     build_beside(model, tmp_path)
     out = paths.model_firmware(tmp_path)
@@ -73,7 +73,7 @@ def test_what_is_written_to_tiles_is_built_first_unless_told_or_impossible(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     built: list[Path] = []
-    monkeypatch.setattr(own_firmware, "build", lambda out, quiet: built.append(out))
+    monkeypatch.setattr(own_firmware, "build", lambda out, *_: built.append(out))
     model = tmp_path / "hex"
     shutil.copytree(paths.MODELS / "hex", model)
     assert image_to_write(model) == paths.model_elf(model)

@@ -34,7 +34,7 @@ def test_the_digits_have_the_drawings_of_all_sizes() -> None:
 def test_a_named_model_comes_first_also_one_that_is_not_built() -> None:
     models = page_models(None, paths.MODELS / "hex", ())
     assert models[0].name == "hex"
-    assert models[0].id_text == "90E8"
+    assert models[0].id_text == "E27F"
     assert [one.name for one in models].count("hex") == 1
 
 

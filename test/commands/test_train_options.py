@@ -30,6 +30,15 @@ def test_the_usual_recipe_is_the_commands_and_all_are_listed(usual: str) -> None
     parser = argparse.ArgumentParser()
     add_training_arguments(parser, usual)
     args = parser.parse_args([])
-    assert (args.recipe, args.seed, args.state, args.device) == (usual, 1, 21, "cpu")
-    assert args.hidden is args.iterations is args.seeds is args.jobs is args.scheduler is None
+    assert (args.recipe, args.seed, args.device) == (usual, 1, "cpu")
+    assert (
+        args.state
+        is args.weights
+        is args.hidden
+        is args.iterations
+        is args.seeds
+        is args.jobs
+        is args.scheduler
+        is None
+    )
     assert " ".join(RECIPES) in parser.format_help()

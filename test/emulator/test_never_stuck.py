@@ -125,7 +125,7 @@ def test_behind_the_stock_boot_loader_a_reset_is_told_from_a_power_on() -> None:
 
 
 def test_the_unused_stack_is_what_the_emulator_says(talk: Talk) -> None:
-    talk.listen(3.0)
+    talk.listen(15.0)  # a byte a millisecond is looked at, and fewer while it computes
     stack = talk.tile.stack
     assert talk.last(TimeSentence).stack_unused == pytest.approx(stack.deepest - stack.floor, abs=2)
 

@@ -21,6 +21,9 @@ EVENTS = {
     "deed": stream.deed_event(1.0, {"do": "pull", "port": "tile-03"}),
     "display": stream.display_event(1.0, "tile-03", 0x66, (5, 50, 30), "N-S-"),
     "frame": stream.frame_event(1.0, "tile-03", "E", b"\x01\x02"),
+    "classes": stream.classes_event(1.0, [{"label": "4", "segments": 102, "rgb": [5, 50, 30]}]),
+    "health": stream.health_event(1.0, "tile-03", "silent", {"N": ("well", 0.987), "S": ("none", None)}),
+    "note": stream.note_event(1.0, "tile-03", "shows 4", bad=False),
     "refused": stream.refused_event(0.0, "no tile lies there"),
 }
 

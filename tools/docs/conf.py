@@ -51,7 +51,7 @@ html_copy_source = False
 html_show_copyright = False
 
 # A button on code that a reader types or keeps, not on what a program prints.
-TYPED = ("bash", "dockerfile", "js", "python", "sh", "toml", "yaml")
+TYPED = ("bash", "dockerfile", "html", "js", "python", "sh", "toml", "yaml")
 copybutton_selector = f":is({', '.join(f'.highlight-{language}' for language in TYPED)}) pre"
 
 highlight_language = "text"  # of a block that names no language

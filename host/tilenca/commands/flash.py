@@ -9,7 +9,7 @@ from pathlib import Path
 from tilenca.base import paths
 from tilenca.base.errors import NoDeviceError
 from tilenca.base.project import firmware_image
-from tilenca.base.shipped import model_folder
+from tilenca.base.shipped import model_folder, model_names
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_fleet_arguments, count, positive
 from tilenca.commands.own_firmware import image_to_write
@@ -38,7 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--model",
         type=model_folder,
         metavar="DIR",
-        help="write the firmware of this model, built beside its files (the project's own firmware)",
+        help="write the firmware of this model, built beside its files: its directory, or one of: "
+        f"{' '.join(model_names())} (the project's own firmware)",
     )
     image.add_argument("--hex", type=Path, metavar="F", help="write this Intel HEX image; nothing is built")
     parser.add_argument("--no-build", action="store_true", help="write the image that is there")

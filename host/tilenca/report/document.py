@@ -122,8 +122,8 @@ def verdict(row: Row) -> str:
     return "held" if row.value >= row.target else "missed"
 
 
-def bold(text: str) -> markupsafe.Markup:
-    """HTML of a text with **bold** parts; everything else in it is text."""
+def bold(text: str) -> str:
+    """HTML of a text with `**bold**` parts, as markup; everything else in it is text."""
     parts = [markupsafe.escape(part) for part in text.split("**")]
     return markupsafe.Markup("").join(
         markupsafe.Markup("<strong>{}</strong>").format(part) if number % 2 else part
