@@ -37,7 +37,7 @@ SYSTEM_PACKAGES = {
 }
 NEXT = {
     "demo": "make demo",
-    "train": ". .venv/bin/activate && tilenca make my-shapes.toml, with your drawings in it (docs/how-to/draw.md)",
+    "train": ". .venv/bin/activate && tilenca make my-shapes.toml (how to draw: docs/how-to/draw.md)",
     "test": "make test",
     "docs": "make docs",
     "check": "make check",
