@@ -7,7 +7,8 @@ import { SIDES } from "./sides.js";
 const EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2";
 /** With the most each can be. */
 const LINK_KINDS = new Map([["loss", 1], ["flip", 1], ["delay", 1000]]);
-const TILE_KINDS = new Map([["drift", 10000], ["adc", 100]]);
+const TILE_KINDS = new Map([["drift", 10000], ["adc", 100], ["supply", 5.5]]);
+const LEAST_V = 1.8, USUAL_V = 5;
 const MOMENT_KINDS = ["cut", "off", "remove", "reset"];
 const ENDLESS = ["remove", "reset", "adc", "drift"];
 const SHAPE = /^([a-z]+)(?:=([^@:]+))?(?:@([^:]+))?(?::([^-]+)(?:-(.+))?)?$/;
@@ -50,6 +51,7 @@ export function parseFault(text) {
   }
   const value = valueText === undefined ? 0 : numberIn(text, valueText, "number");
   if (most !== undefined && value > most) throw complaint(text, `${kind} is 0 to ${most}`);
+  if (kind === "supply" && value < LEAST_V) throw complaint(text, `supply is ${LEAST_V} to ${most} V`);
   const fromS = fromText === undefined ? 0 : numberIn(text, fromText, "time in seconds");
   const toS = toText === undefined ? null : numberIn(text, toText, "time in seconds");
   if (toS !== null && toS <= fromS) throw complaint(text, "it ends before it begins");
@@ -122,7 +124,11 @@ export class Faults {
       });
       this.#planSwitch(spec, setPower, false);
     } else {
-      for (const tile of this.#tiles(spec)) this.#plan(spec.fromS, () => this.#act(spec, tile));
+      for (const tile of this.#tiles(spec)) {
+        this.#plan(spec.fromS, () => this.#act(spec, tile));
+        // Of these, only a supply has an end.
+        if (spec.toS !== null) this.#plan(spec.toS, () => this.array.tile(tile).setSupply(USUAL_V));
+      }
     }
   }
 
@@ -147,6 +153,7 @@ export class Faults {
     if (spec.kind === "reset") tile.reset();
     else if (spec.kind === "remove") this.array.removeTile(index);
     else if (spec.kind === "adc") tile.setAdcNoise(spec.value, this.seed);
+    else if (spec.kind === "supply") tile.setSupply(spec.value);
     else tile.setDrift(spec.value * (spec.where ? 1 : new Chance(`${this.seed} drift ${index}`).uniform(-1, 1)));
   }
 
