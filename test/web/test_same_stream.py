@@ -134,7 +134,7 @@ def test_two_seconds_of_an_eight_are_told_alike(both: Any, seed: int) -> None:
 
 def test_hands_and_faults_are_told_alike(both: Any) -> None:
     faults = ["flip=0.001@3E", "loss=0.02:0.1-0.6", "delay=3@2:0.2-0.4", "cut@1-2:0.3-0.5", "off@7:0.2-0.8",
-              "reset@9:0.4", "drift=400", "drift=90@2", "adc=2", "supply=4.3@4:0.8-1.4",
+              "reset@9:0.4", "drift=400", "drift=90@2", "adc=2", "supply=4.3@4:0.1-0.4",
               "remove@5:1.2"]  # fmt: skip
     commands = [opened(7, cells=EIGHT[:10], faults=faults)]
     commands += [{"do": "step", "seconds": 0.05}] * 10 + [
