@@ -79,8 +79,8 @@ class Ordeal:
         ppm = [self.draw.uniform(-5000, 5000) for _ in self.places]
         boot = STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
         self.array = Array(elf, len(self.places), cables(everywhere), ppm, threads=threads, bootloader=boot)
-        self.given = {i: Settings(i + 1, PERIODS_MS[0], 0) for i in range(len(self.array))}
-        self.before = dict(self.given)  # settings may be these, until the tile has written the new ones
+        # What each tile may have: with every change since the last look, or without those that were lost.
+        self.given = {i: {Settings(i + 1, PERIODS_MS[0], 0)} for i in range(len(self.array))}
         for tile in self.array:
             tile.write_eeprom(0, settings_block(tile.index + 1, PERIODS_MS[0], 0))
             tile.powered = False
@@ -199,10 +199,9 @@ class Ordeal:
     def change_a_setting(self) -> None:
         """Sends a setting; sometimes the power goes while it is written."""
         index = self._a_tile()
-        period_ms, brightness = self.draw.choice(PERIODS_MS), self.draw.randrange(256)
+        period_ms, brightness = self.draw.choice(PERIODS_MS), self.draw.randrange(1, 256)
         name, value = self.draw.choice([("period", period_ms), ("brightness", brightness)])
-        old = self.before[index] = self.given[index]
-        self.given[index] = replace(old, **{FIELDS[name]: value})
+        self.given[index] |= {replace(old, **{FIELDS[name]: value}) for old in self.given[index]}
         self.array[index].write_serial(set_command(name, value))
         if self.draw.random() < 0.3:
             self.run(SLICE_S)
@@ -246,10 +245,10 @@ class Ordeal:
             if now_s - (said_s := self.said_s.get(index, 0)) > TALKS_WITHIN_S:
                 self._broken(f"tile {index + 1} is stuck: silent since {said_s:.2f} s")
             found = parse_settings(tile.read_eeprom(0, SETTINGS_SIZE))
-            if found not in (self.given[index], self.before[index]):
+            if found is None or found not in self.given[index]:
                 self._broken(f"tile {index + 1} has settings that nobody gave it: {found}")
-            elif found is not None:
-                self.given[index] = self.before[index] = found
+            else:
+                self.given[index] = {found}
         if set(labels) != {self.drawing.label}:
             self.findings.late.append(f"{now_s:.2f} s: {self.drawing.label} shows {' '.join(labels)}")
 
