@@ -8,6 +8,7 @@ import pytest
 from rich import progress
 from rich.console import Console, RenderableType
 
+from support.standing_clock import StandingClock
 from support.terminal import stderr_on_terminal
 from tilenca.training.progress import Progress
 from tilenca.views import steps as module
@@ -17,20 +18,10 @@ from tilenca.views.steps import LINE_EVERY_S, Step, Steps, show_steps, time_text
 NAMES = ("check", "train", "measure")
 
 
-class Clock:
-    """Stands still but for what is added to it."""
-
-    def __init__(self) -> None:
-        self.seconds = 100.0
-
-    def monotonic(self) -> float:
-        return self.seconds
-
-
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+def clock(monkeypatch: pytest.MonkeyPatch) -> StandingClock:
     """The clock that the view goes by."""
-    owned = Clock()
+    owned = StandingClock()
     monkeypatch.setattr(module, "time", owned)
     return owned
 
@@ -62,7 +53,7 @@ def test_a_step_with_a_pace_goes_by_it_and_not_by_earlier_work() -> None:
 
 
 def test_without_a_terminal_there_is_a_line_for_beginning_and_end_and_one_a_minute(
-    clock: Clock, capsys: pytest.CaptureFixture[str]
+    clock: StandingClock, capsys: pytest.CaptureFixture[str]
 ) -> None:
     steps = Steps(NAMES, "train")
     steps.begin("check")
@@ -123,7 +114,7 @@ def test_on_a_terminal_the_steps_stand_together_with_the_curve_of_the_training(
     assert capsys.readouterr() == ("", "")
 
 
-def test_the_share_of_a_training_is_that_of_all_its_seeds(clock: Clock) -> None:
+def test_the_share_of_a_training_is_that_of_all_its_seeds(clock: StandingClock) -> None:
     steps = Steps(NAMES, "train")
     steps.expect("train", 1000.0)
     steps.begin("train")

@@ -4,32 +4,23 @@ import re
 
 import pytest
 
+from support.standing_clock import StandingClock
 from support.terminal import stderr_on_terminal
 from tilenca.training.progress import Progress
 from tilenca.views import training
 from tilenca.views.training import LINE_EVERY_S, show_measuring, show_training
 
 
-class Clock:
-    """Stands still but for what is added to it."""
-
-    def __init__(self) -> None:
-        self.seconds = 100.0
-
-    def monotonic(self) -> float:
-        return self.seconds
-
-
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+def clock(monkeypatch: pytest.MonkeyPatch) -> StandingClock:
     """The clock that the view goes by."""
-    owned = Clock()
+    owned = StandingClock()
     monkeypatch.setattr(training, "time", owned)
     return owned
 
 
 def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
-    clock: Clock, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    clock: StandingClock, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with stderr_on_terminal(monkeypatch, width=140) as screen, show_training([5, 6], 400) as tell:
         tell(Progress(5, 100, 0.25, 0.5, None))
@@ -48,7 +39,7 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
 
 
 def test_the_time_left_is_by_the_rate_of_this_run_not_of_the_one_it_goes_on_from(
-    clock: Clock, capsys: pytest.CaptureFixture[str]
+    clock: StandingClock, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with show_training([5], 2000) as tell:
         tell(Progress(5, 1400, 1.0, 0.0, None))
@@ -66,7 +57,7 @@ def test_the_time_left_is_by_the_rate_of_this_run_not_of_the_one_it_goes_on_from
 
 
 def test_without_a_terminal_each_seed_tells_a_line_a_minute_and_its_end(
-    clock: Clock, capsys: pytest.CaptureFixture[str]
+    clock: StandingClock, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with show_training([5, 6], 1000) as tell:
         for iteration in range(1, 1001):
