@@ -16,6 +16,7 @@ import { Notice } from "./components/notice.js";
 import { offerOnly, refusal } from "./components/offer.js";
 import { Share } from "./components/share.js";
 import { Timeline } from "./components/timeline.js";
+import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, readAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
@@ -125,6 +126,14 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
 });
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
+const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
+  say: (text) => notice.say(text),
+  choose(open) {
+    deeds.select(null);
+    source.close();
+    source = (open ?? opener)(listener);
+  },
+});
 listenToKeys(bar, deeds);
 obeyParent(deeds);
 // Only the board and time, for a lesson or an article.
@@ -181,6 +190,7 @@ function show(events) {
   agreement.update(now);
   timeline.update(now);
   fleet.update(now);
+  usb.update();
 }
 
 /** A source is there: shows what it can do, and begins a run, unless its tiles run by themselves. */
@@ -218,7 +228,9 @@ const listener = {
 // The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
 const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
 const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
-let source = (openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer)(listener);
+const opener = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
+let source = opener(listener);
+usb.offer(behind);
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => {
