@@ -128,10 +128,10 @@ const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing)
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
   say: (text) => notice.say(text),
-  choose(open) {
+  choose(wanted) {
     deeds.select(null);
     source.close();
-    source = (open ?? opener)(listener);
+    source = (wanted ?? open)(listener);
   },
 });
 listenToKeys(bar, deeds);
@@ -228,8 +228,8 @@ const listener = {
 // The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
 const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
 const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
-const opener = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
-let source = opener(listener);
+const open = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
+let source = open(listener);
 usb.offer(behind);
 
 setInterval(remember, 500);

@@ -5,12 +5,15 @@
 /** @import { Listener, Look, Model, Source } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 /** @import { UsbTile } from "../stream/usb_tile.js" */
-import { ImageError, readImage } from "../stream/intel_hex.js";
+import { parseElf } from "../stream/elf.js";
+import { ImageError, checkMemory, readImage } from "../stream/intel_hex.js";
 import { webSerial } from "../stream/serial.js";
 import { UsbSource } from "../stream/usb.js";
 import { element, icon, setText } from "./dom.js";
 
 const ICON = "M9 3v5M15 3v5M7 8h10v4a5 5 0 0 1-10 0zM12 17v4";
+/** Where the bundle that needs no server has its firmware. */
+const OWN = "emulator/firmware.elf";
 const RESULTS = { flashed: "flashed; it runs this firmware", current: "runs this firmware already", failed: "", "": "" };
 
 /**
@@ -46,6 +49,7 @@ export class UsbPanel {
       icon(ICON), element("span", {}, "Connect tiles"));
     top.append(this.button);
     this.file = element("input", { type: "file", accept: ".hex", id: "usb-file", onchange: () => this.choose() });
+    this.own = element("button", { type: "button", hidden: true, onclick: () => this.takeOwn() }, "Take the firmware of this page");
     this.about = element("p", { class: "summary", id: "usb-about" }, "Choose the firmware.hex that `pio run` builds.");
     this.flash = element("button", { type: "button", class: "primary", disabled: true, onclick: () => this.flashAll() }, "Flash all tiles");
     this.status = element("p", { role: "status" });
@@ -57,7 +61,7 @@ export class UsbPanel {
         element("button", { type: "button", onclick: () => this.add() }, "Add a tile…"),
         element("button", { type: "button", onclick: () => this.leave() }, "Disconnect all")),
       element("h3", {}, element("label", { for: "usb-file" }, "Firmware to flash")),
-      this.file, this.about, this.flash, this.status,
+      this.file, this.own, this.about, this.flash, this.status,
       this.list,
     );
     addEventListener("beforeunload", (event) => {
@@ -68,18 +72,19 @@ export class UsbPanel {
   /** Offers it where the browser can do it. @param {string} behind what stands behind the page */
   offer(behind) {
     this.button.hidden = !this.serial || behind === "recording";
+    this.own.hidden = behind !== "emulator";
   }
 
   /** Goes over to the tiles whose ports the page may use; asks for one where there is none. */
   async connect() {
-    if (!this.serial) return;
-    const ports = await this.serial.getPorts();
+    const { serial } = this;
+    if (!serial || this.source) return;
+    const ports = await serial.getPorts();
     if (!ports.length) {
       const asked = await this.ask();
       if (!asked) return;
       ports.push(asked);
     }
-    const { serial } = this;
     this.looks = this.tiles.looks;
     this.models = this.tiles.models;
     this.deeds.choose((listener) => (this.source = new UsbSource(serial, this.looks, listener)));
@@ -104,8 +109,9 @@ export class UsbPanel {
     if (port) await this.source?.add(port);
   }
 
-  leave() {
-    if (this.isFlashing) {
+  async leave() {
+    const { source } = this;
+    if (!source || this.isFlashing) {
       this.deeds.say("Tiles are being flashed; wait until they are done.");
       return;
     }
@@ -114,19 +120,34 @@ export class UsbPanel {
     this.rows.clear();
     setText(this.status, "");
     this.root.hidden = true;
-    this.button.hidden = false;
     this.deeds.choose(null);
+    await source.closed; // the ports cannot be opened again before that
+    this.button.hidden = false;
   }
 
   /** Reads the chosen image. */
   async choose() {
     const [file] = this.file.files ?? [];
-    if (!file) return;
+    if (file) await this.take(async () => readImage(file.name, new Uint8Array(await file.arrayBuffer())));
+  }
+
+  /** The firmware that the emulated tiles of the page run. */
+  async takeOwn() {
+    await this.take(async () => {
+      const answer = await fetch(OWN);
+      if (!answer.ok) throw new ImageError(`${OWN}: ${answer.status}; choose a firmware.hex`);
+      return checkMemory(OWN, parseElf(OWN, new Uint8Array(await answer.arrayBuffer())));
+    });
+    this.file.value = "";
+  }
+
+  /** @param {() => Promise<Image>} read */
+  async take(read) {
     this.image = null;
     let text = "";
     try {
-      this.image = readImage(file.name, new Uint8Array(await file.arrayBuffer()));
-      text = `${file.name}: ${this.image.size} bytes, firmware id ${this.image.firmwareId}`;
+      this.image = await read();
+      text = `${this.image.name}: ${this.image.size} bytes, firmware id ${this.image.firmwareId}`;
     } catch (error) {
       if (!(error instanceof ImageError)) throw error;
       text = error.message;

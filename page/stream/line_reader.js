@@ -5,6 +5,10 @@ import { parseSentence } from "./sentences.js";
 const MAX_SENTENCE = 200;
 const CANDIDATE = /^\$[^*]*\*../s;
 const BREAK = /[\r\n]+|(?=\$)/;
+const AROUND = /^[ \t\r\n\v\f]+|[ \t\r\n\v\f]+$/g;
+
+/** Without white space around it; 0xA0 is a byte like others. @param {string} text */
+const stripped = (text) => text.replace(AROUND, "");
 
 /** Each byte as a character (Latin-1). @param {Uint8Array} bytes */
 export function latin1(bytes) {
@@ -27,7 +31,7 @@ export class LineReader {
     }
     /** @type {string[]} */
     const lines = [];
-    for (const piece of pieces.map((one) => one.trim()).filter(Boolean)) {
+    for (const piece of pieces.map(stripped).filter(Boolean)) {
       if (!this.#joinedMidway || piece.startsWith("$")) lines.push(...linesOf(piece));
       this.#joinedMidway = false;
     }
@@ -39,6 +43,6 @@ export class LineReader {
 function linesOf(piece) {
   const found = CANDIDATE.exec(piece)?.[0];
   if (found === undefined || !parseSentence(found)) return [piece];
-  const rest = piece.slice(found.length).trim();
+  const rest = stripped(piece.slice(found.length));
   return rest ? [found, rest] : [found];
 }

@@ -5,7 +5,7 @@
 /** @import { Command, Listener, Look, Place, StreamEvent } from "./source.js" */
 /** @import { Neighbours } from "./layout.js" */
 import { arrange } from "./layout.js";
-import { STREAM_VERSION } from "./source.js";
+import { OFFSETS, SIDES, STREAM_VERSION } from "./source.js";
 import { UsbTile } from "./usb_tile.js";
 
 /** What a page can do with them; the rest only a hand at the tiles can. */
@@ -29,6 +29,8 @@ export class UsbSource {
   /** The setting `updates` of a tile that was frozen here. @type {Map<string, number>} */
   #thawed = new Map();
   #began = Date.now();
+  /** @type {Promise<unknown>} */
+  closed = Promise.resolve();
   #timer;
 
   /**
@@ -85,10 +87,10 @@ export class UsbSource {
   }
 
   #tick() {
-    this.#lay();
+    const places = this.#lay();
     for (const tile of this.tiles.values()) {
       this.#tellNews({ port: tile.name, display: this.#display(tile) }, "display");
-      this.#tellNews({ port: tile.name, health: { trouble: tile.trouble, links: linksOf(tile) } }, "health");
+      this.#tellNews({ port: tile.name, health: { trouble: tile.trouble, links: linksOf(tile, places) } }, "health");
     }
     this.#tell({ pace: { speed: 1, paused: false, share: 1 } });
     const events = this.#events;
@@ -103,17 +105,17 @@ export class UsbSource {
     return { segments: look.segments, rgb: look.rgb, leds: tile.known.links };
   }
 
-  /** Places, as neighbours say; tiles that nobody hears are in a row below, others that have no port are told, too. */
+  /** Places, as neighbours say; tiles without an id are in a row below, others that have no port are told, too. */
   #lay() {
     const cells = this.#cells();
-    /** @type {Set<string>} */
-    const taken = new Set();
+    /** @type {Map<string, UsbTile>} */
+    const taken = new Map();
     const below = Math.max(-1, ...[...cells.values()].map(([row]) => row)) + 1;
     let rest = 0;
     for (const tile of this.tiles.values()) {
       let place = tile.tile ? cells.get(tile.tile) : undefined;
       if (!place || taken.has(place.join())) place = [below, rest++];
-      taken.add(place.join());
+      taken.set(place.join(), tile);
       this.#tellNews({ port: tile.name, place, tile: tile.tile }, "place");
     }
     const here = new Set([...this.tiles.values()].map(({ tile }) => tile));
@@ -121,6 +123,7 @@ export class UsbSource {
       const place = here.has(number) ? null : cells.get(number) ?? null;
       this.#layAway(number, place);
     }
+    return taken;
   }
 
   /** A tile that others hear, and that is behind no port. @param {number} number @param {Place | null} place */
@@ -195,18 +198,31 @@ export class UsbSource {
     return this.#thawed.get(name) ?? FOR_EVER;
   }
 
-  /** Gives all ports back. */
+  /** Gives all ports back; `closed` comes when it is done. */
   close() {
     clearInterval(this.#timer);
     this.serial.removeEventListener("connect", this.#connected);
-    for (const tile of this.tiles.values()) tile.close();
+    this.closed = Promise.all([...this.tiles.values()].map((tile) => tile.close()));
   }
 }
 
-/** The sides on which a tile hears a neighbour. @param {UsbTile} tile */
-function linksOf({ isOpen, known }) {
+/**
+ * How the links of a tile are.
+ * @param {UsbTile} tile @param {Map<string, UsbTile>} places
+ */
+function linksOf(tile, places) {
   /** @type {Record<string, [string, number | null]>} */
   const links = {};
-  if (isOpen) for (const side of known.links) if (side !== "-") links[side] = ["well", null];
+  if (tile.trouble) return links;
+  const [at] = [...places].find(([, one]) => one === tile) ?? ["0,0"];
+  const [row, col] = at.split(",").map(Number);
+  [...SIDES].forEach((side, index) => {
+    const health = tile.health.get(side);
+    const beside = places.get([row + OFFSETS[index][0], col + OFFSETS[index][1]].join());
+    // A tile lies there that speaks, and is not heard.
+    const isDeaf = beside !== undefined && beside.label !== "" && !beside.trouble && tile.label !== "";
+    const mark = health?.mark(tile.known.links.includes(side)) || (isDeaf ? "dead" : "");
+    if (mark) links[side] = [mark, health?.good ?? null];
+  });
   return links;
 }

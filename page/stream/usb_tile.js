@@ -5,6 +5,7 @@
 /** @import { WebPort } from "./serial.js" */
 /** @import { StreamEvent } from "./source.js" */
 import { LineReader } from "./line_reader.js";
+import { LinkHealth } from "./link_health.js";
 import { framed, parseSentence } from "./sentences.js";
 import { BytePort, GoneError, passed } from "./serial.js";
 import { FlashError, program } from "./stk500.js";
@@ -50,9 +51,12 @@ export class UsbTile {
     this.isOpen = false;
     this.isWatched = true;
     this.isBusy = false;
+    this.isWritten = false;
     /** As it says itself. */
     this.known = newTile(name);
     this.label = "";
+    /** Of each side. @type {Map<string, LinkHealth>} */
+    this.health = new Map();
     /** Its id; 0: it has not said it, or has none. */
     this.tile = 0;
     /** @type {Hello | null} */
@@ -142,15 +146,24 @@ export class UsbTile {
       this.hello = sentence;
       this.#answerMs = 0;
       if (!asked) {
-        this.label = "";
-        this.known.links = "----";
-        this.known.link = {};
+        this.#forget();
       }
+    } else if (sentence.name === "LINK") {
+      const health = this.health.get(sentence.side) ?? new LinkHealth();
+      health.take(sentence);
+      this.health.set(sentence.side, health);
     } else if (sentence.name === "ACK") {
       this.note(sentence.fields.join(" "));
     } else if (sentence.name === "NAK") {
       this.note(`refused a command: ${sentence.reason}`, true);
     }
+  }
+
+  /** What it has shown and heard is over. */
+  #forget() {
+    this.label = "";
+    Object.assign(this.known, { links: "----", link: {} });
+    this.health.clear();
   }
 
   /** A line of the log. @param {string} text */
@@ -160,8 +173,7 @@ export class UsbTile {
 
   /** One word for a tile that is not heard; "" where all is well. */
   get trouble() {
-    if (!this.isOpen) return "away";
-    if (this.isBusy) return "";
+    if (!this.isOpen || this.isWritten) return "away";
     return performance.now() - this.#heardMs > Math.max(QUIET_MS, 2 * this.known.periodMs) ? "silent" : "";
   }
 
@@ -207,9 +219,12 @@ export class UsbTile {
     if (!this.isOpen) throw new FlashError("the board went away; connect it and flash it again");
     /** @type {number[]} */
     let heard = [];
+    this.#goDark();
     try {
       heard = await program(this.port, image.flash, (phase, share) => this.#progress(phase, share));
     } finally {
+      this.isWritten = false;
+      this.tell({ port: this.name, open: true });
       this.#listen(heard);
     }
     this.#progress("asking what it runs now");
@@ -221,6 +236,13 @@ export class UsbTile {
       );
     }
     return this.#end("flashed");
+  }
+
+  /** It shows and says nothing while it is written. */
+  #goDark() {
+    this.isWritten = true;
+    this.#forget();
+    this.tell({ port: this.name, open: false, reason: "is being flashed" });
   }
 
   /** @param {string} phase @param {number | null} share */

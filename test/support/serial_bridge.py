@@ -106,20 +106,22 @@ class Bridge:
         ports: the pseudo-terminal behind each name.
         url: of the page.
         passing: called with the name and the bytes of each message to a board; returns what arrives there, or
-            None: the cable is pulled.
+            None: the port goes away.
+        pulled: names whose port is not there.
         resets: how often the browser has reset each board.
     """
 
     ports: Mapping[str, Path]
     url: str = ""
     passing: Callable[[str, bytes], bytes | None] = lambda name, data: data
+    pulled: set[str] = field(default_factory=set)
     resets: dict[str, int] = field(default_factory=dict)
 
     async def serve(self, websocket: WebSocket) -> None:
         """One open port."""
         name = websocket.query_params["name"]
         await websocket.accept()
-        if not self.ports[name].exists():
+        if name in self.pulled:
             await websocket.close()
             return
         line = _Line(self.ports[name])
