@@ -190,7 +190,7 @@ def test_links_are_judged_alike(page: Page) -> None:
             sent = 0 if silent else chance.randrange(30)
             counts["lost"] += (lost := sum(chance.random() < loss for _ in range(sent)))
             counts["received"] += sent - lost
-            counts["corrupt"] += chance.choice([0, 0, 3])
+            counts["corrupt"] += chance.choice([0, 3, 9])
             counts["foreign"] += chance.random() < 0.02
             world.append({**counts, "uptimeMs": uptime_ms})
         worlds.append(world)
