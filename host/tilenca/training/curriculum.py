@@ -153,7 +153,12 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     generator = None
     if renewed:
         generator = Generator(
-            task, [shape for _, shape in entries], tuple(renewed), recipe.library // 5, random
+            task,
+            [shape for _, shape in entries],
+            tuple(renewed),
+            recipe.library // 5,
+            random,
+            gaps is not None,
         )
         for kind, share in renewed.items():
             count = max(len(task.labels), round(recipe.library * share / sum(renewed.values())))
