@@ -16,8 +16,13 @@ struct Settings {
     uint16_t period_ms; // from update to update
     uint16_t updates;   // after these the tile stops; 0: never
     uint8_t brightness; // of digit, colour and link LEDs, of 255
-    uint8_t leds_off;   // 1: the link LEDs stay dark
+    uint8_t leds;       // what the link LEDs show
 };
+
+// Of the link LEDs, as EEPROM has it. The command counts otherwise: 0 is dark, 1 links, 2 what is missing.
+constexpr uint8_t kLedsLinks = 0; // which neighbours are alive
+constexpr uint8_t kLedsDark = 1;
+constexpr uint8_t kLedsMissing = 2; // on which side a tile is missing
 
 // Reads a block from EEPROM. If anything in it is wrong, returns false and leaves `settings` unchanged.
 bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings);

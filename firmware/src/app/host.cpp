@@ -61,7 +61,7 @@ Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
 
 Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
     wanted_ = tile.settings();
-    if (!change(&wanted_)) {
+    if (!change(tile.model().directions ? 2 : 1, &wanted_)) {
         write_nak(tile, "VALUE", reader_.field(0), sentence);
         return Result::Answer;
     }
@@ -69,7 +69,7 @@ Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
 }
 
 // Changes the setting that the command names. False if there is no such setting or value.
-bool Host::change(Settings* settings) const {
+bool Host::change(uint16_t most_leds, Settings* settings) const {
     const char* name = reader_.field(1);
     const char* text = reader_.field(2);
     uint16_t number = 0;
@@ -87,8 +87,8 @@ bool Host::change(Settings* settings) const {
         settings->updates = number;
     } else if (equal(name, "brightness") && number_of(text, 0xFF, &number)) {
         settings->brightness = static_cast<uint8_t>(number);
-    } else if (equal(name, "leds") && number_of(text, 1, &number)) {
-        settings->leds_off = number == 0;
+    } else if (equal(name, "leds") && number_of(text, most_leds, &number)) {
+        settings->leds = number == 2 ? kLedsMissing : number == 1 ? kLedsLinks : kLedsDark;
     } else {
         return false;
     }

@@ -20,7 +20,7 @@ constexpr uint8_t kChecked = kSettingsSize - 2;
 } // namespace
 
 bool parse_settings(const uint8_t (&block)[kSettingsSize], Settings* settings) {
-    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion || block[9] > 1) {
+    if (block[0] != 'T' || block[1] != 'N' || block[2] != kSettingsVersion || block[9] > kLedsMissing) {
         return false;
     }
     if (word_at(block + kChecked) != crc16(block, kChecked)) {
@@ -42,7 +42,7 @@ void write_settings(const Settings& settings, uint8_t (&block)[kSettingsSize]) {
     put_word(settings.period_ms, block + 4);
     put_word(settings.updates, block + 6);
     block[8] = settings.brightness;
-    block[9] = settings.leds_off;
+    block[9] = settings.leds;
     put_word(crc16(block, kChecked), block + kChecked);
 }
 

@@ -35,6 +35,6 @@ SETTING_RANGES = {
     "period": (MIN_PERIOD_MS, MAX_PERIOD_MS),
     "updates": (0, 0xFFFF),
     "brightness": (0, MAX_BRIGHTNESS),
-    "leds": (0, 1),
+    "leds": (0, 2),
 }
 PRESETS = ("paper", "default")

@@ -16,6 +16,7 @@ class HelloSentence:
         reset_cause: MCUSR, as far as the tile knows it.
         firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
         brightness: 0..255.
+        directions: 4: the channels before the classes' say on which side a tile is missing; 0: none do.
     """
 
     version: int
@@ -28,6 +29,7 @@ class HelloSentence:
     reset_cause: int
     firmware_id: int
     brightness: int
+    directions: int = 0
 
 
 @dataclass(frozen=True)
