@@ -291,7 +291,8 @@ def find_recipe(name: str) -> Recipe:
 
 def aims_of(recipe: Recipe) -> Aims:
     """The aims of a recipe."""
-    return Aims(recipe.stretch, recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0)
+    shown = (recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0, recipe.directions > 0)
+    return Aims(recipe.stretch, *shown)
 
 
 def trains_for(recipe: Recipe, key: str) -> bool:
