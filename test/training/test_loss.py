@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from tilenca.shapes.batch import NO_CLASS
-from tilenca.training.loss import GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
+from tilenca.training.loss import BESIDE, GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
 
 # Three cells of a hidden channel and two scores: the first is perfect, the second undecided, the third wrong.
 END = torch.tensor([[0.5, 1.0, 0.0], [0.0, 0.5, 0.5], [0.0, 1.0, 0.0]])
@@ -74,7 +74,7 @@ def test_directions_are_the_four_channels_before_the_scores() -> None:
 
 def test_the_error_of_the_directions_is_added_where_it_is_told_what_is_missing() -> None:
     goal = Goal(2, torch.tensor([0, 0, 0]), EVERY, NONE, GAPS)
-    each = [2 * 0.1**2, 2 * 0.4**2, 2 * (0.7**2 + 0.4**2)]
+    each = [2 * BESIDE * 0.1**2, 2 * 0.4**2, 2 * BESIDE * (0.7**2 + 0.4**2)]
     assert loss_of(SIDES_SAID, SIDES_SAID, goal, 0.0).item() == pytest.approx(sum(each) / 3)
     some = replace(goal, gaps=replace(GAPS, told=torch.tensor([True, True, False])))
     assert loss_of(SIDES_SAID, SIDES_SAID, some, 0.0).item() == pytest.approx(sum(each[:2]) / 3)
