@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from tilenca.base.sides import SIDES
 from tilenca.model.file import NEIGHBOURHOOD, Model
+from tilenca.protocol.constants import MISSING
 
 NOWHERE = -1
-THRESHOLD = 0.5  # of a score
-MESSAGE_THRESHOLD = 32  # the same in the units of a message
+THRESHOLD = 0.5  # of a score; MISSING in the units of a message
 
 
 def missing_sides(states: NDArray[np.int16], classes: int) -> NDArray[Any]:
@@ -28,7 +28,7 @@ def missing_sides(states: NDArray[np.int16], classes: int) -> NDArray[Any]:
         classes: the number of classes.
     """
     scores = (states[:, -classes - len(SIDES) : -classes].astype(np.int32) + 64) >> 7
-    return np.where(scores.max(axis=1) > MESSAGE_THRESHOLD, scores.argmax(axis=1), NOWHERE)
+    return np.where(scores.max(axis=1) > MISSING, scores.argmax(axis=1), NOWHERE)
 
 
 def with_directions(model: Model) -> Model:

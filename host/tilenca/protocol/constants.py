@@ -38,3 +38,4 @@ SETTING_RANGES = {
     "leds": (0, 2),
 }
 PRESETS = ("paper", "default")
+MISSING = 32  # a direction's score above which a tile is missing there, as a message (section 4)

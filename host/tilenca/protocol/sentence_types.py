@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from tilenca.protocol.constants import PROTOCOL_VERSION
+from tilenca.base.sides import SIDES
+from tilenca.protocol.constants import MESSAGE_OFFSET, MISSING, PROTOCOL_VERSION
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,19 @@ class TileSentence:
     margin: int | None
     links: str
     state: bytes
+
+
+def missing_side(hello: HelloSentence, tile: TileSentence) -> str:
+    """The side on which a tile says that one is missing; empty for none, or if its model has no directions.
+
+    Args:
+        hello: of the tile.
+        tile: what it says now.
+    """
+    first = hello.channels - hello.classes - hello.directions
+    scores = [byte - MESSAGE_OFFSET for byte in tile.state[first : first + hello.directions]]
+    most = max(scores, default=MISSING)
+    return SIDES[scores.index(most)] if most > MISSING else ""
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from tilenca.protocol.sentence_types import (
     Sentence,
     TileSentence,
     TimeSentence,
+    missing_side,
 )
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "TimeSentence",
     "format_sentence",
     "framed",
+    "missing_side",
     "parse_sentence",
     "type_of",
 ]
