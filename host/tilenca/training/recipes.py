@@ -229,13 +229,13 @@ RECIPES: dict[str, Recipe] = {
         check_every=1_000,
         validation_runs=100,
     ),
-    # Tiles also say on which side another one is missing. Few sizes, for strokes of large drawings are long.
+    # Tiles also say on which side another one is missing, at the drawn size: docs/TRAINING.md says why.
     "damage": replace(
         FULL,
         iterations=30_000,
-        stretch=1.75,
-        stretched=0.2,
-        damaged=0.4,
+        stretch=1.0,
+        stretched=0.0,
+        damaged=0.45,
         unknown=0.15,
         directions=2.0,
         one_tile=0.5,
