@@ -141,6 +141,12 @@ def labels_at_last(answers: list[list[StreamEvent]]) -> dict[str, str]:
     return said
 
 
+def said_until(answers: list[list[StreamEvent]], time_s: float) -> set[tuple[float, str, str]]:
+    """All lines, of which some are told again after a jump."""
+    said = [event for events in answers for event in events if "raw" in event]
+    return {(event["time"], event["port"], event["raw"]) for event in said if event["time"] < time_s}
+
+
 @pytest.mark.parametrize("seed", [0, 2**53 - 1])
 def test_two_seconds_of_an_eight_are_told_alike(both: Any, seed: int) -> None:
     step = {"do": "step", "seconds": STEP_S}
@@ -243,9 +249,9 @@ def test_single_instructions_are_told_alike_and_change_nothing(both: Any) -> Non
     names = [name for name, *_ in chips[0]["variables"]]
     assert "tilenca_sending" in names
     assert any(chip["function"] for chip in chips)
-    raw = [event for events in answers for event in events if "raw" in event and event["time"] < 0.19]
     without = both([opened(5, cells=EIGHT[:6], speed=0.1), *[step] * 4])
-    assert raw == [event for events in without for event in events if "raw" in event and event["time"] < 0.19]
+    assert said_until(answers, 0.19) == said_until(without, 0.19)
+    assert len(said_until(without, 0.19)) > 10
 
 
 def test_mistakes_are_refused_alike(both: Any) -> None:
