@@ -172,12 +172,13 @@ def _measured(
 
 def _draw_history(where: Path, result: "Result") -> None:
     from tilenca.training.results import history_table
+    from tilenca.views.abilities import targets_by_kind
     from tilenca.views.plots import plot_history
 
     if result.history:
         columns, rows = history_table(result)
         title = f"Training of model {result.model.model_id:04X}"
-        plot_history(rows, where / "history.png", columns, title)
+        plot_history(rows, where / "history.png", columns, title, targets_by_kind(result.metrics))
 
 
 def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
