@@ -152,7 +152,9 @@ function slideUnder(drawing) {
 
 /** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
-  history.replaceState(null, "", `?${new URLSearchParams({ model: model.id || model.name })}${location.hash}`);
+  const look = new URLSearchParams(location.search).get("look");
+  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }) });
+  history.replaceState(null, "", `?${query}${location.hash}`);
   run.start = null;
   source.close();
   source = open(listener);

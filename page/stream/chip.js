@@ -22,6 +22,7 @@ export const flagsOf = (sreg) => [...FLAGS].map((name, index) => [name, ((sreg >
 /**
  * A name as it is written in C++, as far as it is a plain one: `_ZN7tilenca4Tile4tickEv` is `tilenca::Tile::tick`.
  * @param {string} symbol
+ * @returns {string}
  */
 export function plainName(symbol) {
   const inside = /^_ZZ(N.+?E)\w*?E(\d+)(.*)$/.exec(symbol); // a variable of a function
