@@ -182,6 +182,8 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     ]
     commands += [
         {"do": "pull", "port": "tile-11"},
+        {"do": "turn", "port": "tile-02"},
+        {"do": "skew", "port": "tile-03", "ppm": 5000},
         *[step] * 4,
         {"do": "put", "row": 7, "col": 7},
         *[step] * 4,
@@ -190,6 +192,10 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     commands += [{"do": "seek", "seconds": 0.0}, *[step] * 2, {"do": "noise", "loss": 0.1}, *[step] * 3]
     commands += [{"do": "seek", "seconds": 9}, {"do": "seek", "seconds": 0.1}, step]
     answers = both(commands)
+    after = [events[1:] for events in answers if any("jump" in event for event in events)]
+    spoilt = [{event["port"]: event["fault"] for event in events if "fault" in event} for events in after]
+    known = {"tile-02": {"turned": True, "skew": 0}, "tile-03": {"turned": False, "skew": 5000}}
+    assert spoilt == [{}, known, {}, {}, {}]  # told anew where they stand
     jumps = [event for events in answers for event in events if "jump" in event]
     came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
     assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
