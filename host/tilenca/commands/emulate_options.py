@@ -6,8 +6,8 @@ from pathlib import Path
 from tilenca.base.errors import UsageError
 from tilenca.base.shipped import model_folder
 from tilenca.commands.arguments import add_shapes_argument, count, number, seed, size, whole
-from tilenca.emulator.faults import KINDS
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.fault_spec import KINDS
+from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.emulator.hardware import UNPOWERED
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
 

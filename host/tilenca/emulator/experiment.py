@@ -12,7 +12,8 @@ from typing import Any
 from tilenca.base.errors import TilencaError
 from tilenca.emulator.array import Array
 from tilenca.emulator.eeprom_files import load_eeprom
-from tilenca.emulator.faults import Faults, FaultSpec
+from tilenca.emulator.fault_spec import FaultSpec
+from tilenca.emulator.faults import Faults
 from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile
