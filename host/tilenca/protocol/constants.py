@@ -38,3 +38,7 @@ SETTING_RANGES = {
     "leds": (0, 1),
 }
 PRESETS = ("paper", "default")
+# The marking of a board in EEPROM, twice from this address.
+MARKING_AT = 2 * SETTINGS_SIZE
+MAX_REVISION = 0xFF
+MAX_SERIAL = 0xFFFF
