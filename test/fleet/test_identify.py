@@ -15,6 +15,7 @@ from tilenca.protocol.sentences import (
     BoardSentence,
     ChipSentence,
     LinkSentence,
+    Sentence,
     TileSentence,
     format_sentence,
     framed,
@@ -71,10 +72,11 @@ def test_what_a_tile_measures_is_awaited_where_it_is_wanted(stack: ExitStack) ->
     board = BoardSentence(7, 1500, 4380, (0, 9, 0, 0), (0,) * 4)
     links = [LinkSentence(7, at, "E", 0, at, 0, at, 0, 20, 0, 1, "W") for at in (100, 500)]
     chip = ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF)
+    said: list[Sentence] = [chip, *links, first, board]
 
     def answer(line: bytes, count: int) -> bytes:
         assert line == chip_command()
-        return b"".join(format_sentence(one) for one in (chip, *links, first, board))
+        return b"".join(format_sentence(one) for one in said)
 
     new = stack.enter_context(Device(format_sentence(HELLO), answer))
     old = stack.enter_context(Device(format_sentence(HELLO)))
