@@ -1,4 +1,4 @@
-"""How far clocks and edges may be off before links lose frames: python -m bench.margins [--write FILE | --check].
+"""How far clocks and edges may be off before links lose frames: bench.margins [--write FILE | --check].
 
 Two emulated tiles run the real firmware. In the tables of edges a program carries each edge from pin to pin,
 and moves it on the way.
