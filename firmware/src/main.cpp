@@ -159,8 +159,11 @@ void sleep() {
 
 void load_settings() {
     Settings settings = kDefaults;
-    if (store.load(&settings) == SettingsStore<board::Eeprom>::Found::Damage) {
-        telemetry.failed(Error::Settings);
+    for (uint8_t kind = kBlocks;
+         kind-- != 0;) { // settings last: what is to be mended does not delay the start
+        if (store.load(static_cast<Block>(kind), &settings) == SettingsStore<board::Eeprom>::Found::Damage) {
+            telemetry.failed(Error::Settings);
+        }
     }
     tile.apply(settings);
 }
@@ -183,6 +186,8 @@ void setup() {
     load_settings();
     board::watchdog_begin();
     write_hello(tile, boot, &sentence);
+    say_sentence();
+    write_chip(tile, boot, &sentence);
     say_sentence();
 }
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from tilenca.base.errors import TilencaError
 from tilenca.emulator.array import Array
+from tilenca.emulator.board_faults import BoardFault, BoardFaults
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.fault_spec import FaultSpec
 from tilenca.emulator.faults import Faults
@@ -64,7 +65,7 @@ class EmulationSettings:
     seed: int = 0
     bootloader: Path | None = None
     unpowered: str = "low"
-    faults: tuple[FaultSpec, ...] = ()
+    faults: tuple[FaultSpec | BoardFault, ...] = ()
     threads: int = 1
     eeprom: Path | None = None
 
@@ -104,7 +105,7 @@ class Emulation:
             elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads,
             hardware=hardware,
         )  # fmt: skip
-        self.faults = Faults(self.array, links, settings.seed)
+        self.faults = BoardFaults(self.array, links, settings.seed)
         for spec in settings.faults:
             self.faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)

@@ -39,3 +39,7 @@ SETTING_RANGES = {
 }
 PRESETS = ("paper", "default")
 MISSING = 32  # a direction's score above which a tile is missing there, as a message (section 4)
+# The marking of a board in EEPROM, twice from this address.
+MARKING_AT = 2 * SETTINGS_SIZE
+MAX_REVISION = 0xFF
+MAX_SERIAL = 0xFFFF

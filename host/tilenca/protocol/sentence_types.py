@@ -116,13 +116,24 @@ class TimeSentence:
 
 @dataclass(frozen=True)
 class ChipSentence:
-    """The chip's fuse bytes and its lock byte, on request."""
+    """The chip's fuse bytes and its lock byte, and the board's marking; at boot and on request.
+
+    Attributes:
+        revision: of the board; None where it was not marked, as is `serial`, its number.
+    """
 
     tile: int
     low: int
     high: int
     extended: int
     lock: int
+    revision: int | None = None
+    serial: int | None = None
+
+    @property
+    def marking(self) -> str | None:
+        """The marking as `tilenca set board` takes it."""
+        return None if self.revision is None else f"{self.revision}.{self.serial}"
 
 
 @dataclass(frozen=True)

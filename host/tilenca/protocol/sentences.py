@@ -71,8 +71,8 @@ def format_sentence(sentence: Sentence) -> bytes:
             fields = ("LINK", *vars(sentence).values())
         case TimeSentence():
             fields = ("TIME", *vars(sentence).values())
-        case ChipSentence(tile, low, high, extended, lock):
-            fields = ("CHIP", tile, f"{low:02X},{high:02X},{extended:02X},{lock:02X}")
+        case ChipSentence(tile, low, high, extended, lock, revision, serial):
+            fields = ("CHIP", tile, f"{low:02X},{high:02X},{extended:02X},{lock:02X}", revision, serial)
         case BoardSentence(tile, uptime_ms, supply_mv, framing_errors, low_ms):
             fields = ("BOARD", tile, uptime_ms, supply_mv, *framing_errors, *low_ms)
         case ErrorSentence(tile, uptime_ms, code, text):
@@ -145,8 +145,11 @@ def _time(text: str) -> Sentence | None:
 def _chip(text: str) -> Sentence | None:
     if (found := patterns.CHIP.fullmatch(text)) is None:
         return None
-    tile, *values = found.groups()
-    return ChipSentence(int(tile), *(int(value, 16) for value in values))
+    tile, *fuses, revision, serial = found.groups()
+    if bool(revision) != bool(serial):
+        return None
+    marking = (int(revision), int(serial)) if revision else ()
+    return ChipSentence(int(tile), *(int(value, 16) for value in fuses), *marking)
 
 
 def _board(text: str) -> Sentence | None:

@@ -53,6 +53,12 @@ def settings_block(
     return body + crc16(body).to_bytes(CRC_SIZE, "little")
 
 
+def marking_block(revision: int, serial: int) -> bytes:
+    """The block that a tile reads from EEPROM address MARKING_AT."""
+    body = b"TB" + bytes([SETTINGS_VERSION, revision]) + serial.to_bytes(2, "little") + bytes(4)
+    return body + crc16(body).to_bytes(CRC_SIZE, "little")
+
+
 def parse_settings(block: bytes) -> Settings | None:
     """The settings in a block of SETTINGS_SIZE bytes, or None if a tile would ignore it."""
     body, crc = block[:-CRC_SIZE], block[-CRC_SIZE:]

@@ -94,6 +94,34 @@ TEST_CASE_FIXTURE(Fixture, "the link LEDs show what is missing only where the mo
     CHECK(answer("SET,leds,3") == line_of("a value out of range"));
 }
 
+TEST_CASE_FIXTURE(Fixture, "a marking is kept for good, unless the command says that it is to be replaced") {
+    CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
+    CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
+    for (const char* other : {"MARK,3,1017", "MARK,2,1018"}) {
+        CHECK(answer(other) == line_of("a marking that is for good"));
+    }
+    CHECK(memory.bytes == memory_of({7, 100, 0, 255, 0, 2, 1017}).bytes);
+    CHECK(answer("CHIP").find(",2,1017*") != std::string::npos);
+    answer("SET,period,20");
+    CHECK(memory.bytes == memory_of({7, 20, 0, 255, 0, 2, 1017}).bytes);
+    CHECK(answer("MARK,3,65535,replace").find("$ACK,7,MARK,3,65535*") == 0);
+    CHECK(memory.bytes == memory_of({7, 20, 0, 255, 0, 3, 65535}).bytes);
+    for (const char* wrong : {"MARK", "MARK,2", "MARK,0,1", "MARK,256,1", "MARK,2,65536", "MARK,2,x",
+                              "MARK,2,1,now", "MARK,2,1,replace,", "MARK,,"}) {
+        CAPTURE(wrong);
+        CHECK(answer(wrong).find("$NAK,7,VALUE,MARK*") == 0);
+    }
+    CHECK(tile.settings().serial == 65535);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a marking that EEPROM does not keep is told, and the board stays unmarked") {
+    memory.worn = 2 * kSettingsSize + 4;
+    CHECK(answer("MARK,2,1017").find("$NAK,7,EEPROM,MARK*") == 0);
+    CHECK(tile.settings().revision == 0);
+    CHECK(answer("SET,period,20") == line_of("answer to a period"));
+    CHECK(answer("CHIP").find(",,*") != std::string::npos);
+}
+
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
     for (const char* wrong : {"SET,period,9", "SET,period,10001", "SET,id,256", "SET,updates,65536",
                               "SET,brightness,256", "SET,leds,2", "SET,preset,fast", "SET,preset,",
