@@ -17,6 +17,7 @@ import { Notice } from "./components/notice.js";
 import { offerOnly, refusal } from "./components/offer.js";
 import { Share } from "./components/share.js";
 import { Timeline } from "./components/timeline.js";
+import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { cellsOf, readAddress } from "./stream/address.js";
 import { openEmulator } from "./stream/emulator.js";
@@ -137,6 +138,14 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 const lens = new LensPanel(byId("lens"), byId("scale"), tiles, (one) => board.look(one));
+const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
+  say: (text) => notice.say(text),
+  choose(wanted) {
+    deeds.select(null);
+    source.close();
+    source = (wanted ?? open)(listener);
+  },
+});
 listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1));
 obeyParent(deeds);
 // Only the board and time, for a lesson or an article.
@@ -196,6 +205,7 @@ function show(events) {
   agreement.update(now);
   timeline.update(now);
   fleet.update(now);
+  usb.update();
 }
 
 /** A source is there: shows what it can do, and begins a run, unless its tiles run by themselves. */
@@ -236,6 +246,7 @@ const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute
 const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
 const open = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
 let source = open(listener);
+usb.offer(behind);
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => {

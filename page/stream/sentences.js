@@ -3,7 +3,7 @@
 
 /**
  * @typedef {{name: "HELLO", version: number, tile: number, modelId: string, channels: number, classes: number,
- *   periodMs: number, updates: number, brightness: number}} Hello
+ *   periodMs: number, updates: number, firmwareId: string, brightness: number}} Hello
  * @typedef {{name: "TILE", tile: number, uptimeMs: number, updates: number, label: string,
  *   classIndex: number | null, margin: number | null, links: string, state: number[]}} TileSentence
  * @typedef {{name: "LINK", tile: number, uptimeMs: number, side: string, sent: number, received: number,
@@ -47,7 +47,8 @@ const PARSERS = {
     (f.length === 10 || f.length === 11) && Number(f[0]) === PROTOCOL_VERSION
       ? {
           name: "HELLO", version: Number(f[0]), tile: Number(f[1]), modelId: f[2], channels: Number(f[3]),
-          classes: Number(f[4]), periodMs: Number(f[5]), updates: Number(f[6]), brightness: Number(f[9]),
+          classes: Number(f[4]), periodMs: Number(f[5]), updates: Number(f[6]), firmwareId: f[8],
+          brightness: Number(f[9]),
         }
       : null,
   TILE: (f) =>
@@ -90,6 +91,11 @@ const PARSERS = {
   ACK: (f) => ({ name: "ACK", tile: Number(f[0]), fields: f.slice(1) }),
   NAK: (f) => ({ name: "NAK", tile: Number(f[0]), reason: f[1] ?? "" }),
 };
+
+/** A command to a tile, with its line end (docs/PROTOCOL.md section 6). @param {string} text */
+export function framed(text) {
+  return `$${text}*${checksum(text).toString(16).toUpperCase().padStart(2, "0")}\r\n`;
+}
 
 /**
  * The sentence in a line; null for noise, damage, another version, or an unknown name.

@@ -32,6 +32,7 @@ class StandIn:
         recovers: what is wrong with it is no longer so when it is greeted after a page was written.
         gone_after: its port vanishes after that many pages written.
         decayed: address whose byte reads back wrong.
+        greeting: what it says when it leaves programming, as the program that it has then.
         flash: what was written.
         pages: pages written so far.
     """
@@ -42,6 +43,7 @@ class StandIn:
     recovers: bool = False
     gone_after: int | None = None
     decayed: int | None = None
+    greeting: bytes = b""
     flash: bytearray = field(default_factory=lambda: bytearray(b"\xff" * 0x40000))
     pages: int = 0
 
@@ -105,6 +107,8 @@ class StandIn:
         for byte in message:
             parity ^= byte
         os.write(self._master, message + bytes([parity]))
+        if body[0] == LEAVE and self.greeting:
+            os.write(self._master, self.greeting)
 
     def _reply(self, body: bytes) -> bytes:
         command = body[0]

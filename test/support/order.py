@@ -7,6 +7,7 @@ LONG = (
     "emulator/test_hardship.py",
     "browser/test_tiles_in_the_browser.py",
     "browser/test_for_everybody.py",
+    "browser/test_usb.py",
     "fleet/test_fleet.py",
     "docs/test_code_blocks.py",
     "docs/test_fleet_story.py",

@@ -38,7 +38,7 @@ FIRST_LED_CHANNEL, OPEN, USUAL = 8, 1023, 512  # what the ADC says of an LED tha
 MOST_PERCENT = 5.0
 STEP_S, LEAST_S = 0.001, 1e-6  # bridges and plugs are looked at so often; an array runs no shorter
 PLUG_DELAY_S = 0.005  # what a plug hands back comes this much later
-DRIFT_STEP_S = 2**20 / 16e6  # a drifting clock changes at multiples of this (tile/clock.h)
+PPM_OF_PERCENT = 1e4
 CLOCK_HZ = 16e6
 
 
@@ -123,13 +123,9 @@ class BoardFaults(Faults):
             end = (fault.tile - 1, SIDES.index(fault.side))
             if any(end in (link[:2], link[2:]) for link in self.links):
                 raise fault.refuse("there is a cable; a plug goes on a side without a neighbour")
-        self._plan(fault.from_s, partial(self._begin, fault))
-        if fault.kind == "resonator":
-            self._plan(_changed_s(fault.from_s), partial(self._drift, fault, 0.0))
+        self._plan(fault.from_s, partial(self._begin_board, fault))
         if fault.to_s is not None:
-            self._plan(fault.to_s, partial(self._end, fault))
-            if fault.kind == "resonator":
-                self._plan(_changed_s(fault.to_s), partial(self._drift, fault, 0.0))
+            self._plan(fault.to_s, partial(self._end_board, fault))
 
     def run(self, seconds: float) -> list[int]:
         """As that of `Faults`, and does what bridges and plugs do meanwhile."""
@@ -143,7 +139,7 @@ class BoardFaults(Faults):
                 act()
         return sorted(restarted)
 
-    def _begin(self, fault: BoardFault) -> None:
+    def _begin_board(self, fault: BoardFault) -> None:
         tile = self.array[fault.tile - 1]
         match fault.kind, fault.values:
             case "high" | "low" as level, (port, bit):
@@ -153,11 +149,11 @@ class BoardFaults(Faults):
             case "led", (number,):
                 tile.set_analog(FIRST_LED_CHANNEL + int(number) - 1, OPEN)
             case "resonator", (percent,):
-                self._drift(fault, 1e4 * float(percent) / DRIFT_STEP_S)
+                self.skew(fault.tile - 1, PPM_OF_PERCENT * float(percent))
             case _:
                 self._going[fault] = Plug(self.array, tile, SIDES.index(fault.side)).play
 
-    def _end(self, fault: BoardFault) -> None:
+    def _end_board(self, fault: BoardFault) -> None:
         tile = self.array[fault.tile - 1]
         self._going.pop(fault, None)
         match fault.kind, fault.values:
@@ -165,18 +161,10 @@ class BoardFaults(Faults):
                 tile.hold_pin(port, int(bit), None)
             case "led", (number,):
                 tile.set_analog(FIRST_LED_CHANNEL + int(number) - 1, USUAL)
-            case "resonator", (percent,):
-                self._drift(fault, -1e4 * float(percent) / DRIFT_STEP_S)
+            case "resonator", _:
+                self.skew(fault.tile - 1, 0.0)
             case _:
                 tile.hold_pin(*tile.side_pin(SIDES.index(fault.side), receiving=True), None)
-
-    def _drift(self, fault: BoardFault, ppm_per_s: float) -> None:
-        self.array[fault.tile - 1].set_drift(ppm_per_s)
-
-
-def _changed_s(from_s: float) -> float:
-    """When a drift that begins at a time has changed the clock once, and not twice."""
-    return (from_s // DRIFT_STEP_S + 1.5) * DRIFT_STEP_S
 
 
 class Plug:
