@@ -57,7 +57,7 @@ web: setup-web ## build the emulator and the simulator for browsers, into build/
 	@$(TOOL) release.web_model models/digits build/web/bundle/digits.json
 
 page-bundle: web ## lay out the page that needs no server of its own, into build/page-bundle
-	@$(TOOL) release.page_bundle build/web/bundle build/page-bundle
+	@$(TOOL) release.page_bundle build/web/bundle build/page-bundle all
 
 test-web: web setup-test ## build for browsers, and run the tests of that
 	@$(PYTHON) -m pytest -n 0 test/web test/browser/test_static_bundle.py

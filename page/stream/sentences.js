@@ -44,7 +44,7 @@ function checksum(text) {
 /** @type {Record<string, (f: string[]) => Sentence | null>} */
 const PARSERS = {
   HELLO: (f) =>
-    f.length === 10 && Number(f[0]) === PROTOCOL_VERSION
+    (f.length === 10 || f.length === 11) && Number(f[0]) === PROTOCOL_VERSION
       ? {
           name: "HELLO", version: Number(f[0]), tile: Number(f[1]), modelId: f[2], channels: Number(f[3]),
           classes: Number(f[4]), periodMs: Number(f[5]), updates: Number(f[6]), brightness: Number(f[9]),

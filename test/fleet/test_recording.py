@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca.base.errors import UsageError
-from tilenca.fleet.recording import Recorder, format_event, parse_event, read_recording
+from tilenca.fleet.recording import Recorder, format_event, parse_event, read_recording, recorded_shapes
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import parse_sentence
@@ -76,3 +76,11 @@ def test_a_recording_that_was_cut_off_is_played_to_there_and_not_appended_to(
     with Recorder(path, "a") as record:
         record.write([whole])
     assert path.read_text() == 2 * whole
+
+
+def test_the_shapes_of_emulated_runs_are_known(tmp_path: Path) -> None:
+    path = tmp_path / "r.jsonl"
+    lines = ['{"time": 1.0, "shape": "4"}', "cut", '{"time": 2.0, "shape": "1"}', '{"shape": "4"}', "[]"]
+    path.write_text("\n".join(lines), encoding="ascii")
+    assert recorded_shapes(path) == ["4", "1"]
+    assert recorded_shapes(tmp_path / "none") == []

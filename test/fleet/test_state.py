@@ -103,3 +103,13 @@ def test_json_has_tile_port_time_type_and_fields() -> None:
 def test_a_model_id_is_four_hex_digits_in_json_too() -> None:
     fields = as_json(Heard(0.0, "p", b"", replace(HELLO, model_id=0xAB)))["fields"]
     assert (fields["model_id"], fields["firmware_id"]) == ("00AB", "00C0FFEE")
+
+
+def test_a_port_that_is_heard_is_open_unless_news_say_that_it_went_away() -> None:
+    fleet = Fleet()
+    fleet.take(Heard(1.0, "p", b"", TILE))
+    assert fleet.tiles["p"].is_open
+    fleet.take(PortNews(2.0, "p", is_open=False, reason="unplugged"))
+    fleet.take(Heard(2.1, "p", b"", TILE))  # read before
+    assert not fleet.tiles["p"].is_open
+    assert fleet.tiles["p"].outages == 1

@@ -63,6 +63,7 @@ def test_the_shared_files_are_what_their_script_writes() -> None:
 
 SENTENCES: dict[str, Sentence] = {
     "hello of tile 7": HelloSentence(3, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128),
+    "hello of a tile with directions": HelloSentence(3, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128, 4),
     "tile before its first update": TileSentence(0, 0, 0, "", None, None, "----", bytes([0xC0, 0x80, 0x80])),
     "tile after its first update": TileSentence(
         255, 4294967295, 1, "4", 0, 30, "N-S-", bytes([0xC0, 0x8A, 0x6C])

@@ -25,7 +25,7 @@ def test_settings_case(name: str, block: str, expected: str) -> None:
         (1, 10001, 0),
         (1, 100, 65536),
         (1, 100, 0, 256),
-        (1, 100, 0, 255, 2),
+        (1, 100, 0, 255, 3),
     ],
 )
 def test_settings_out_of_range_are_refused(values: tuple[int, ...]) -> None:

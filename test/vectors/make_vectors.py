@@ -144,7 +144,8 @@ def settings_cases() -> list[tuple[str, bytes, str]]:
         ("version 1", block(*paper, magic=b"TN\1"), "ignored"),
         ("version 1's shorter block", block(*paper, magic=b"TN\1")[:10] + b"\xff\xff", "ignored"),
         ("link LEDs off", block(*paper, rest=1), "7 2000 30 128 0"),
-        ("link LEDs neither on nor off", block(*paper, rest=2), "ignored"),
+        ("link LEDs show what is missing", block(*paper, rest=2), "7 2000 30 128 2"),
+        ("link LEDs show what nobody knows", block(*paper, rest=3), "ignored"),
         ("bit flipped in the crc", block(*paper, bad_crc=1), "ignored"),
         ("bit flipped in the updates", block(*paper)[:6] + b"\x1f" + block(*paper)[7:], "ignored"),
     ]
@@ -154,6 +155,7 @@ def sentence_cases() -> list[tuple[str, str]]:
     """(name, text between `$` and `*`) of every case; the tests of both twins know the values behind them."""
     return [
         ("hello of tile 7", "HELLO,3,7,BEEF,3,2,2000,30,0A,00C0FFEE,128"),
+        ("hello of a tile with directions", "HELLO,3,7,BEEF,3,2,2000,30,0A,00C0FFEE,128,4"),
         ("tile before its first update", "TILE,0,0,0,,,,----,C08080"),
         ("tile after its first update", "TILE,255,4294967295,1,4,0,30,N-S-,C08A6C"),
         ("link that never heard a frame", "LINK,7,5,W,0,0,0,0,0,,0,,"),

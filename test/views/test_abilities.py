@@ -3,7 +3,7 @@
 import json
 
 from tilenca.base import paths
-from tilenca.views.abilities import QUESTIONS, abilities
+from tilenca.views.abilities import QUESTIONS, Targets, abilities, targets_by_kind
 
 
 def row(key: str, holds: bool, target: float | None = 0.9) -> dict[str, object]:
@@ -25,3 +25,8 @@ def test_every_kind_of_every_shipped_model_has_words() -> None:
         document = json.loads(metrics.read_text(encoding="utf-8"))
         assert {one["key"] for one in document["rows"]} <= QUESTIONS.keys(), metrics
         assert next(iter(abilities(document))).startswith(("can: ", "not well enough: "))
+
+
+def test_targets_are_counted_by_kind() -> None:
+    rows = [row("sizes", True), row("sizes", False, 0.5), row("drawings", True), row("unknown", True, None)]
+    assert targets_by_kind({"rows": rows}) == {"sizes": Targets(1, 2, 0.5), "drawings": Targets(1, 1, 0.9)}

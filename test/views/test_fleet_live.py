@@ -7,11 +7,10 @@ from rich.console import Console
 from support.heard_fleet import STATE, HeardFleet
 from support.strategies import sentences
 from tilenca.fleet.grid import Grid
+from tilenca.fleet.side_hints import SUPPLY_REMEDY
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
-from tilenca.protocol.sentences import (
-    TileSentence,
-)
+from tilenca.protocol.sentences import ErrorSentence, TileSentence
 from tilenca.views.fleet_live import LiveView
 
 said: st.SearchStrategy[Event] = st.one_of(
@@ -43,3 +42,17 @@ def test_on_a_narrow_terminal_the_log_says_what_happens_and_not_where_ports_are(
         lab.take(said)
         view.show(1.0, [said])
     assert view.lines(50, 24)[-1].plain.endswith(" tile   3 tile-03 shows 9, before 4")
+
+
+def test_a_remedy_is_never_cut_off_and_a_dead_tile_is_named() -> None:
+    lab, port = HeardFleet(), "/dev/ttyACM0"
+    view = LiveView(lab.fleet, Grid(), Console(width=60, height=24), table=False)
+    lab.open(port)
+    sag = Heard(1.0, port, b"", ErrorSentence(3, 100, "SUPPLY", "4312 mV"))
+    for event in (Heard(1.0, port, b"", TileSentence(3, 100, 1, "4", 4, 30, "----", STATE)), sag):
+        lab.take(event)
+        view.show(1.0, [event])
+    log = " ".join(line.plain.strip() for line in view.lines(60, 24)[6:])
+    assert f"SUPPLY 4312 mV: {SUPPLY_REMEDY}" in log
+    view.show(9.0, [])
+    assert "1 silent (tile 3)" in view.lines(60, 24)[0].plain

@@ -36,7 +36,7 @@ class Host {
     Result begin_set(const Tile& tile, Sentence* sentence);
     Result begin_mark(const Tile& tile, Sentence* sentence);
     void end_set(bool stored, Tile* tile, Sentence* sentence);
-    bool change(Settings* settings) const;
+    bool change(uint16_t most_leds, Settings* settings) const;
     void begin_ack(const Tile& tile, Sentence* sentence) const;
     void write_nak(const Tile& tile, const char* reason, const char* name, Sentence* sentence) const;
 

@@ -2,6 +2,10 @@
 
 #include <string.h>
 
+#ifdef __AVR__
+#pragma GCC optimize("Os") // it runs once in a while, and flash is short
+#endif
+
 namespace tilenca {
 
 namespace {
@@ -19,7 +23,7 @@ constexpr uint8_t kFields[kNone] = {1, 1, 3, 0, 2, 1}; // the name is one; MARK 
 
 enum Setting : uint8_t { kId, kPeriod, kUpdates, kBrightness, kLeds, kNoSetting };
 constexpr const char* kSettings[kNoSetting] = {"id", "period", "updates", "brightness", "leds"};
-constexpr uint16_t kMost[kNoSetting] = {0xFF, kMaxPeriodMs, 0xFFFF, 0xFF, 1};
+constexpr uint16_t kMost[kLeds] = {0xFF, kMaxPeriodMs, 0xFFFF, 0xFF}; // of the LEDs: by the model
 
 // The index of a name, or the number of names.
 template <uint8_t kNames>
@@ -83,7 +87,7 @@ Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
 Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
     wanted_ = tile.settings();
     wanted_in_ = Block::Settings;
-    if (!change(&wanted_)) {
+    if (!change(tile.model().directions ? 2 : 1, &wanted_)) {
         write_nak(tile, "VALUE", reader_.field(0), sentence);
         return Result::Answer;
     }
@@ -114,7 +118,7 @@ Host::Result Host::begin_mark(const Tile& tile, Sentence* sentence) {
 }
 
 // Changes the setting that the command names. False if there is no such setting or value.
-bool Host::change(Settings* settings) const {
+bool Host::change(uint16_t most_leds, Settings* settings) const {
     const char* name = reader_.field(1);
     const char* text = reader_.field(2);
     uint16_t number = 0;
@@ -125,7 +129,7 @@ bool Host::change(Settings* settings) const {
         return paper || equal(text, "default");
     }
     const uint8_t setting = index_in(kSettings, name);
-    if (setting == kNoSetting || !number_of(text, kMost[setting], &number)) {
+    if (setting == kNoSetting || !number_of(text, setting == kLeds ? most_leds : kMost[setting], &number)) {
         return false;
     }
     if (setting == kId) {
@@ -138,7 +142,7 @@ bool Host::change(Settings* settings) const {
     } else if (setting == kBrightness) {
         settings->brightness = static_cast<uint8_t>(number);
     } else {
-        settings->leds_off = number == 0;
+        settings->leds = number == 2 ? kLedsMissing : number == 1 ? kLedsLinks : kLedsDark;
     }
     return true;
 }

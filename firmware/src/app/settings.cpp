@@ -2,6 +2,10 @@
 
 #include "core/crc16.h"
 
+#ifdef __AVR__
+#pragma GCC optimize("Os") // it runs once in a while, and flash is short
+#endif
+
 namespace tilenca {
 
 namespace {
@@ -24,7 +28,8 @@ constexpr uint8_t kChecked = kSettingsSize - 2;
 } // namespace
 
 bool parse_settings(Block kind, const uint8_t (&block)[kSettingsSize], Settings* settings) {
-    if (block[0] != 'T' || block[1] != letter_of(kind) || block[2] != kSettingsVersion || block[9] > 1) {
+    if (block[0] != 'T' || block[1] != letter_of(kind) || block[2] != kSettingsVersion ||
+        block[9] > kLedsMissing) {
         return false;
     }
     if (word_at(block + kChecked) != crc16(block, kChecked)) {
@@ -43,7 +48,7 @@ bool parse_settings(Block kind, const uint8_t (&block)[kSettingsSize], Settings*
     settings->period_ms = period_ms;
     settings->updates = word_at(block + 6);
     settings->brightness = block[8];
-    settings->leds_off = block[9];
+    settings->leds = block[9];
     return true;
 }
 
@@ -56,7 +61,7 @@ void write_settings(Block kind, const Settings& settings, uint8_t (&block)[kSett
     put_word(marking ? settings.serial : settings.period_ms, block + 4);
     put_word(marking ? 0 : settings.updates, block + 6);
     block[8] = marking ? 0 : settings.brightness;
-    block[9] = marking ? 0 : settings.leds_off;
+    block[9] = marking ? 0 : settings.leds;
     put_word(crc16(block, kChecked), block + kChecked);
 }
 

@@ -20,6 +20,9 @@ void write_hello(const Tile& tile, const Boot& boot, Sentence* sentence) {
     sentence->hex(boot.reset_cause, 2);
     sentence->hex(boot.firmware_id, 8);
     sentence->number(tile.settings().brightness);
+    if (tile.model().directions) {
+        sentence->number(tile.model().directions);
+    }
     sentence->end();
 }
 

@@ -4,7 +4,7 @@ import argparse
 import csv
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -16,8 +16,13 @@ from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
 from tilenca.simulator.conditions import ScheduleKind
 
-HISTORY_FILE = "history.csv"
+if TYPE_CHECKING:
+    from tilenca.views.abilities import Targets
+    from tilenca.views.reel import Reel
+
+HISTORY_FILE, METRICS_FILE = "history.csv", "metrics.json"
 FILM_SUFFIXES = (".png", ".svg", ".gif")
+FILM_OPTIONS = ("shape", "then", "every", "replay", "shapes", "steps", "schedule", "seed")
 FILM_STEPS = 19
 MAX_STEPS = 500
 
@@ -36,19 +41,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", choices=("png", "svg"), default="png", help="of the picture of the training (png)"
     )
-    film = parser.add_argument_group("film", "instead: what the tiles of a shape show, step by step")
+    film = parser.add_argument_group(
+        "film", "instead: what the tiles of a shape show, step by step, or those of a recording"
+    )
     film.add_argument(
         "--film", type=Path, metavar="FILE", help="all steps in one .png or .svg, or an animated .gif"
     )
     film.add_argument(
         "--shape", metavar="NAME", help="the shape to film, such as 4, or 4@2 if the label has two drawings"
     )
+    film.add_argument(
+        "--then", metavar="NAME", help="the shape into which its tiles are rebuilt while they run"
+    )
+    film.add_argument(
+        "--every",
+        type=whole(1, MAX_STEPS),
+        metavar="N",
+        help="with --then: a tile comes or goes every N updates (all at once)",
+    )
+    film.add_argument(
+        "--replay",
+        type=Path,
+        metavar="F",
+        help="a recording instead, as monitor --record or emulate --record wrote it, faults and all",
+    )
     add_shapes_argument(film.add_argument, "the file it is in", OWN_SHAPES)
     film.add_argument(
         "--steps",
         type=whole(1, MAX_STEPS),
         metavar="N",
-        help=f"updates per tile ({FILM_STEPS}: twenty pictures)",
+        help=f"updates per tile; with --then, before and after ({FILM_STEPS}: twenty pictures)",
     )
     film.add_argument(
         "--schedule", choices=("random", "clock"), help="the paper's, or the tiles' own clocks (clock)"
@@ -69,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _history(args: argparse.Namespace) -> dict[str, Any]:
-    for name in ("shape", "shapes", "steps", "schedule", "seed"):
+    for name in FILM_OPTIONS:
         if getattr(args, name) is not None:
             raise UsageError(f"--{name} is of a film; add --film FILE.png or FILE.gif")
     from tilenca.views import plots
@@ -86,8 +108,19 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise plots.unwritable(out, error) from error
-    plots.plot_history(rows, path, columns, f"Training of model {model.model_id:04X}")
+    title = f"Training of model {model.model_id:04X}"
+    plots.plot_history(rows, path, columns, title, _targets(args.model / METRICS_FILE))
     return {"file": str(path), "model": f"{model.model_id:04X}", "rows": len(rows)}
+
+
+def _targets(path: Path) -> "dict[str, Targets]":
+    """The model's targets by kind; none where it was not measured."""
+    from tilenca.views.abilities import targets_by_kind
+
+    try:
+        return targets_by_kind(json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
 
 
 def _home(model: Path) -> Path:
@@ -121,32 +154,67 @@ def read_history(path: Path) -> tuple[list[str], list[list[float | None]]]:
 
 
 def _film(args: argparse.Namespace) -> dict[str, Any]:
-    if args.shape is None:
-        raise UsageError("--film: of which shape? add --shape NAME, such as --shape 4")
     if args.out is not None:
         raise UsageError("--out is for the picture of the training; --film names its own file")
     if args.film.suffix not in FILM_SUFFIXES:
         raise UsageError(
             f"{args.film}: a film is written as {', '.join(FILM_SUFFIXES)}; give a name that ends so"
         )
-    from tilenca.simulator.trace import record
-    from tilenca.views.film import draw_gif, draw_strip
+    return _film_of_run(args) if args.replay is None else _film_of_recording(args)
+
+
+def _film_of_recording(args: argparse.Namespace) -> dict[str, Any]:
+    for name in FILM_OPTIONS:
+        if name != "replay" and getattr(args, name) is not None:
+            raise UsageError(f"--{name} is of a simulated run; --replay shows what was recorded")
+    from tilenca.views.reel import of_recording
+
+    reel = of_recording(args.replay)
+    return {
+        "file": str(args.film),
+        "replay": str(args.replay),
+        "tiles": len(reel.cells),
+        "pictures": _draw(reel, args.film),
+        "title": reel.title,
+    }
+
+
+def _film_of_run(args: argparse.Namespace) -> dict[str, Any]:
+    if args.shape is None:
+        raise UsageError("--film: of which shape? add --shape NAME, such as --shape 4, or --replay F")
+    if args.every is not None and args.then is None:
+        raise UsageError("--every says how a shape is rebuilt; add --then NAME")
+    if args.then is not None and args.schedule == "random":
+        raise UsageError("--then is for tiles on their own clocks; leave --schedule random out")
+    from tilenca.simulator.trace import record, record_change
+    from tilenca.views.reel import of_run
 
     model = load_model(args.model)
     shapes = shapes_or_own(args.shapes and [args.shapes], model, args.model)
     drawings = load_drawings(shapes, labels=model.labels)
     number = find_shape(drawings.shapes, args.shape, shapes[0])
     schedule: ScheduleKind = args.schedule or "clock"
+    steps = args.steps or FILM_STEPS
     chance = 1 if args.seed is None else args.seed
-    film = record(model, drawings, number, args.steps or FILM_STEPS, schedule, chance)
-    draw = draw_gif if args.film.suffix == ".gif" else draw_strip
+    if args.then is None:
+        film = record(model, drawings, number, steps, schedule, chance)
+    else:
+        numbers = (number, find_shape(drawings.shapes, args.then, shapes[0]))
+        film = record_change(model, drawings, numbers, steps, args.every or 0, chance)
     return {
         "file": str(args.film),
         "model": f"{model.model_id:04X}",
         "shape": args.shape,
+        "then": args.then,
         "schedule": schedule,
         "seed": chance,
-        "steps": args.steps or FILM_STEPS,
-        "pictures": draw(film, args.film),
+        "steps": len(film.shown) - 1,
+        "pictures": _draw(of_run(film), args.film),
         "agreed_at": film.agreed_at,
     }
+
+
+def _draw(reel: "Reel", path: Path) -> int:
+    from tilenca.views.film import draw_gif, draw_strip
+
+    return (draw_gif if path.suffix == ".gif" else draw_strip)(reel, path)

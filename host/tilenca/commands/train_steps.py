@@ -16,9 +16,9 @@ from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.train_cluster import train_on_cluster
-from tilenca.commands.train_plan import TrainingPlan
+from tilenca.commands.train_plan import TrainingPlan, usual_channels
 from tilenca.evaluation.suites import make_suite
-from tilenca.model.file import DEFAULT_CHANNELS, Model, checkpoints
+from tilenca.model.file import Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipes import aims_of, find_recipe
 from tilenca.training.sessions import noted
@@ -172,12 +172,13 @@ def _measured(
 
 def _draw_history(where: Path, result: "Result") -> None:
     from tilenca.training.results import history_table
+    from tilenca.views.abilities import targets_by_kind
     from tilenca.views.plots import plot_history
 
     if result.history:
         columns, rows = history_table(result)
         title = f"Training of model {result.model.model_id:04X}"
-        plot_history(rows, where / "history.png", columns, title)
+        plot_history(rows, where / "history.png", columns, title, targets_by_kind(result.metrics))
 
 
 def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
@@ -224,7 +225,7 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
         words += ["--hidden", str(args.hidden or recipe.hidden)]
     else:
         words += ["--weights", place(args.weights)]
-    for option, default in (("state", DEFAULT_CHANNELS), ("device", "cpu"), ("validation_runs", None)):
+    for option, default in (("state", usual_channels(recipe)), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)

@@ -17,8 +17,9 @@ from functools import partial
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
 from tilenca.emulator.array import Array
-from tilenca.emulator.faults import KINDS, Faults, FaultSpec
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.fault_spec import KINDS, FaultSpec
+from tilenca.emulator.fault_spec import parse as parse_fault
+from tilenca.emulator.faults import Faults
 from tilenca.emulator.library import call, new
 from tilenca.emulator.tile import EmulatedTile
 

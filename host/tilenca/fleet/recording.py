@@ -196,3 +196,15 @@ def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
             return
         if event is not None:
             yield event
+
+
+def recorded_shapes(path: Path) -> list[str]:
+    """The shapes of which `emulate --record` wrote runs into a file, in its order; else none."""
+    shapes: dict[str, None] = {}
+    with suppress(OSError, UnicodeDecodeError), path.open(encoding="ascii") as file:
+        for line in file:
+            with suppress(ValueError):
+                match json.loads(line):
+                    case {"shape": str(shape)}:
+                        shapes[shape] = None
+    return list(shapes)

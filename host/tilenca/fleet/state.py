@@ -104,7 +104,10 @@ class TileView:
             self.outages += self.is_open and not event.is_open
             self.is_open, self.reason = event.is_open, event.reason
             self.was_open |= event.is_open
-        elif event.sentence is None:
+            return
+        if not self.outages:  # recordings of emulated tiles have no news of ports
+            self.is_open = self.was_open = True
+        if event.sentence is None:
             self.board_test = event.board_test is not None
             self.damaged += not self.board_test
         else:

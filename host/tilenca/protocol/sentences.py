@@ -19,6 +19,7 @@ from tilenca.protocol.sentence_types import (
     Sentence,
     TileSentence,
     TimeSentence,
+    missing_side,
 )
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "TimeSentence",
     "format_sentence",
     "framed",
+    "missing_side",
     "parse_sentence",
     "type_of",
 ]
@@ -61,6 +63,7 @@ def format_sentence(sentence: Sentence) -> bytes:
                 hello.tile,
                 f"{hello.model_id:04X},{hello.channels},{hello.classes},{hello.period_ms},{hello.updates}",
                 f"{hello.reset_cause:02X},{hello.firmware_id:08X},{hello.brightness}",
+                *([hello.directions] if hello.directions else []),
             )
         case TileSentence():
             fields = ("TILE", *list(vars(sentence).values())[:-1], sentence.state.hex().upper())
@@ -99,11 +102,11 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
 
 def _hello(text: str) -> Sentence | None:
     if (found := patterns.HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
-        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
-            found.groups()
+        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light, directions = (
+            found.groups(default="0")
         )
         numbers = int(channels), int(classes), int(period_ms), int(updates)
-        ids = int(cause, 16), int(firmware, 16), int(light)
+        ids = int(cause, 16), int(firmware, 16), int(light), int(directions)
         return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
     if (found := patterns.OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
         return OtherVersionSentence(int(found[1]), int(found[2]))

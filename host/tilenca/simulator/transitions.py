@@ -23,6 +23,7 @@ from tilenca.simulator.simulator import Simulator, Trajectory
 
 MOST_CHANGES = 2000  # runs of one row; the pairs of thousands of drawings are millions
 PLACES_TRIED = 100
+CLOCKS = Conditions("clock")
 Order = Literal["at once", "adding first", "mixed", "removing first"]
 Step = list[tuple[Cell, bool]]  # tiles put down (true) or taken away at the same time
 
@@ -110,6 +111,40 @@ def rebuilt(
         The runs, which have a cell for every tile of both drawings, and (N,) whether a cell is one of the new
         drawing, in its own order.
     """
+    plan = planned(engine, drawings, pairs, before, random, way)
+    plan.simulator.run(plan.last)
+    return plan.simulator, plan.new
+
+
+@dataclass(frozen=True)
+class Planned:
+    """Runs, not yet begun, in which one drawing is rebuilt into another.
+
+    Attributes:
+        simulator: the runs; they have a cell for every tile of both drawings.
+        grids: the drawings that these cells make up; `simulator.chosen` numbers them.
+        new: (N,) whether a cell is one of the new drawing, in its own order.
+        rebuilding: which tiles are there, and which changes come.
+        last: steps before the last change; it comes in the next one.
+    """
+
+    simulator: Simulator
+    grids: Drawings
+    new: NDArray[np.bool_]
+    rebuilding: Rebuilding
+    last: int
+
+
+def planned(
+    engine: Engine,
+    drawings: Drawings,
+    pairs: Sequence[tuple[int, int]],
+    before: int,
+    random: np.random.Generator,
+    way: Way = Way(),
+    conditions: Conditions = CLOCKS,
+) -> Planned:
+    """The same as `rebuilt`, before its first step; under any conditions."""
     sites = [_Site.plan(drawings, old, new, way.order, random) for old, new in pairs]
     number_of: dict[tuple[Rows, str], int] = {}
     for site in sites:
@@ -118,9 +153,9 @@ def rebuilt(
     chosen = np.array([number_of[site.drawing] for site in sites])
     last = before + (max(len(site.steps) for site in sites) - 1) * way.between
     rebuilding = _timetable(sites, last, way.between)
-    simulator = Simulator(engine, grids, chosen, Conditions("clock"), random, rebuilding=rebuilding)
-    simulator.run(last)
-    return simulator, np.array([cell in site.new for site in sites for cell in site.cells])
+    simulator = Simulator(engine, grids, chosen, conditions, random, rebuilding=rebuilding)
+    new = np.array([cell in site.new for site in sites for cell in site.cells])
+    return Planned(simulator, grids, new, rebuilding, last)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """What a trained model can do and what it cannot, in words, from its measurements."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 # The keys of measurements (docs/TRAINING.md explains them), as a person asks.
 QUESTIONS = {
@@ -36,3 +36,27 @@ def abilities(metrics: Mapping[str, Any]) -> Iterator[str]:
         if keys:
             ordered = [key for key in QUESTIONS if key in keys]
             yield f"{title}: {', '.join(QUESTIONS[key] for key in ordered)}"
+
+
+class Targets(NamedTuple):
+    """Of one kind of measurement: targets that are held, targets that are given, and the least one."""
+
+    held: int
+    given: int
+    least: float
+
+
+def targets_by_kind(metrics: Mapping[str, Any]) -> dict[str, Targets]:
+    """The targets of each kind of measurement that has any.
+
+    Args:
+        metrics: as in metrics.json.
+    """
+    kinds: dict[str, list[Mapping[str, Any]]] = {}
+    for row in metrics["rows"]:
+        if row["target"] is not None:
+            kinds.setdefault(row["key"], []).append(row)
+    return {
+        kind: Targets(sum(row["holds"] for row in rows), len(rows), min(row["target"] for row in rows))
+        for kind, rows in kinds.items()
+    }

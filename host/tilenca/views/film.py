@@ -4,12 +4,9 @@ import io
 import math
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tilenca.shapes.glyphs import SEGMENT_NAMES, look_of_class, screen_colour
-from tilenca.simulator.trace import NOTHING, Film
+from tilenca.shapes.glyphs import SEGMENT_NAMES, screen_colour
 from tilenca.views.plots import FAINT, INK, WIDTH_IN, save, styled, unwritable
+from tilenca.views.reel import Reel
 
 # After plots, which names the remedy where matplotlib is missing.
 from matplotlib.axes import Axes  # isort: skip
@@ -22,8 +19,8 @@ MAX_PANELS = 24
 TILE_IN, GAP_IN, TITLE_IN, CAPTION_IN, MARGIN_IN = 0.3, 0.32, 0.72, 0.45, 0.15
 LEAST_PANEL_IN = 0.85
 LEAST_COLUMNS = 5
-GIF_TILE_IN, GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = 0.5, 2.4, 0.4, 100
-FRAME_MS, LAST_FRAME_MS = 400, 2500
+CHARACTER_EM = 0.6  # a character is no wider in the mean
+GIF_TILE_IN, GIF_WIDEST_IN, GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = 0.7, 7.0, 5.2, 0.4, 100
 
 DARK, DARK_EDGE = "#3a3f47", "#2b2f36"
 WHITE = "#ffffff"
@@ -70,14 +67,15 @@ def luminance(colour: tuple[float, float, float]) -> float:
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
-def draw_tiles(axes: Axes, film: Film, step: int) -> None:
-    """Fills axes with the tiles at a step, coloured by the digits they show; dark where there is none."""
+def draw_tiles(axes: Axes, reel: Reel, number: int) -> None:
+    """Fills axes with the tiles of a picture, coloured by the digits they show; dark where there is none."""
     digits: dict[str, list[list[Point]]] = {INK: [], WHITE: []}
-    for (row, col), shown in zip(film.shape.cells, film.shown[step], strict=True):
+    for (row, col), look in zip(reel.cells, reel.pictures[number].looks, strict=True):
+        if look is None:
+            continue
         fill: tuple[float, float, float] | str = DARK
         edge: tuple[float, ...] | str = DARK_EDGE
-        if shown != NOTHING:
-            look = look_of_class(film.labels, int(shown))
+        if look.label:
             fill = screen_colour(look.colour)
             edge = tuple(0.72 * part for part in fill)
             ink = INK if luminance(fill) > BRIGHT else WHITE
@@ -97,104 +95,112 @@ def draw_tiles(axes: Axes, film: Film, step: int) -> None:
         )
     for ink, polygons in digits.items():
         axes.add_collection(PolyCollection(polygons, facecolor=ink, edgecolor="none", zorder=3))
-    axes.set_xlim(0, len(film.shape.rows[0]))
-    axes.set_ylim(len(film.shape.rows), 0)
+    rows, cols = reel.size
+    axes.set_xlim(0, cols)
+    axes.set_ylim(rows, 0)
     axes.set_axis_off()
 
 
-def _panel(figure: Figure, place: tuple[float, float], tile_in: float, film: Film, step: int) -> None:
-    """The tiles at one step; `place` is their upper left corner in inches from that of the figure."""
+def _panel(figure: Figure, place: Point, tile_in: float, reel: Reel, number: int) -> None:
+    """The tiles of one picture; `place` is their upper left corner in inches from that of the figure."""
     width, height = figure.get_size_inches()
-    wide, high = tile_in * len(film.shape.rows[0]), tile_in * len(film.shape.rows)
+    rows, cols = reel.size
+    wide, high = tile_in * cols, tile_in * rows
     left, top = place
     axes = figure.add_axes((left / width, 1 - (top + high) / height, wide / width, high / height))
-    draw_tiles(axes, film, step)
+    draw_tiles(axes, reel, number)
 
 
-def _caption(figure: Figure, place: tuple[float, float], film: Film, step: int) -> None:
-    """The step's number, ticked off if every tile is right; `place` is the text's middle in inches."""
+def _caption(figure: Figure, place: Point, reel: Reel, number: int) -> None:
+    """The time, ticked off if all tiles agree; `place` is the text's middle in inches."""
     width, height = figure.get_size_inches()
-    right = bool(film.right[step])
+    picture = reel.pictures[number]
     figure.text(
         place[0] / width,
         1 - place[1] / height,
-        f"step {step} \N{CHECK MARK}" if right else f"step {step}",
+        f"{picture.caption} \N{CHECK MARK}" if picture.agreed else picture.caption,
         ha="center",
         va="center",
         fontsize=9,
-        fontweight="bold" if right else "normal",
+        fontweight="bold" if picture.agreed else "normal",
     )
 
 
-def _title(figure: Figure, film: Film) -> None:
+def _title(figure: Figure, reel: Reel) -> None:
     width, height = figure.get_size_inches()
-    agreed = film.agreed_at
-    verdict = (
-        f"every tile right from step {agreed}" if agreed is not None else "not every tile right at the end"
-    )
-    figure.text(
-        MARGIN_IN / width,
-        1 - 0.26 / height,
-        f"\N{LEFT DOUBLE QUOTATION MARK}{film.shape.label}\N{RIGHT DOUBLE QUOTATION MARK}: {verdict}",
-        fontsize=13,
-        fontweight="bold",
-        va="center",
-    )
-    figure.text(
-        MARGIN_IN / width,
-        1 - 0.5 / height,
-        film.about,
-        fontsize=9,
-        color=FAINT,
-        va="center",
-    )
+    room = 72 * (width - 2 * MARGIN_IN) / CHARACTER_EM
+    for text, top, size, weight, colour in (
+        (reel.title, 0.26, 13.0, "bold", INK),
+        (reel.about, 0.5, 9.0, "normal", FAINT),
+    ):
+        figure.text(
+            MARGIN_IN / width,
+            1 - top / height,
+            text,
+            va="center",
+            fontsize=min(size, room / len(text)),
+            fontweight=weight,
+            color=colour,
+        )
 
 
-def panels_of(steps: int) -> NDArray[np.int64]:
-    """The steps that a picture shows: all, or as many as fit, denser at the beginning."""
-    if steps < MAX_PANELS:
-        return np.arange(steps + 1)
-    return np.unique((np.linspace(0, 1, MAX_PANELS) ** 2 * steps).round().astype(np.int64))
+def panels_of(reel: Reel) -> list[int]:
+    """The pictures that a strip shows: all, or as many as fit of those in which something is new.
+
+    The first, the last, and the one from which all agree are among them, and where there are few such, those
+    in which all agree for the first time.
+    """
+    last = len(reel.pictures) - 1
+    if last < MAX_PANELS:
+        return list(range(last + 1))
+    kept = {0, last} if reel.agreed_at is None else {0, last, reel.agreed_at}
+    agreed = [picture.agreed for picture in reel.pictures]
+    begins = {number for number in range(1, last) if agreed[number] and not agreed[number - 1]}
+    if len(begins) <= MAX_PANELS // 4:
+        kept |= begins
+    eventful = [number for number in reel.eventful if number not in kept]
+    room = MAX_PANELS - len(kept)
+    if len(eventful) > room:
+        eventful = [eventful[place * len(eventful) // room] for place in range(room)]
+    return sorted([*kept, *eventful])
 
 
-def draw_strip(film: Film, path: Path) -> int:
-    """Draws the steps of a film side by side, as PNG or SVG; returns how many.
+def draw_strip(reel: Reel, path: Path) -> int:
+    """Draws the pictures of a film side by side, as PNG or SVG; returns how many.
 
     Raises:
         TilencaError: see `tilenca.views.plots.save`.
     """
-    steps = panels_of(len(film.shown) - 1)
-    rows, cols = len(film.shape.rows), len(film.shape.rows[0])
+    chosen = panels_of(reel)
+    rows, cols = reel.size
     usable = WIDTH_IN - 2 * MARGIN_IN + GAP_IN
     tile_in = min(TILE_IN, (usable / LEAST_COLUMNS - GAP_IN) / cols)
     wide, high = max(tile_in * cols + GAP_IN, LEAST_PANEL_IN), tile_in * rows + CAPTION_IN
-    bands = math.ceil(len(steps) / int(usable / wide))
-    across = math.ceil(len(steps) / bands)
+    bands = math.ceil(len(chosen) / int(usable / wide))
+    across = math.ceil(len(chosen) / bands)
     with styled():
         figure = Figure(figsize=(WIDTH_IN, TITLE_IN + bands * high))
         # The rest of the width goes between the panels.
         spread = usable / across
-        _title(figure, film)
-        for number, step in enumerate(steps):
-            middle = MARGIN_IN + (number % across) * spread + (spread - GAP_IN) / 2
-            top = TITLE_IN + (number // across) * high
-            _panel(figure, (middle - tile_in * cols / 2, top), tile_in, film, int(step))
-            _caption(figure, (middle, top + tile_in * rows + 0.15), film, int(step))
+        _title(figure, reel)
+        for place, number in enumerate(chosen):
+            middle = MARGIN_IN + (place % across) * spread + (spread - GAP_IN) / 2
+            top = TITLE_IN + (place // across) * high
+            _panel(figure, (middle - tile_in * cols / 2, top), tile_in, reel, number)
+            _caption(figure, (middle, top + tile_in * rows + 0.15), reel, number)
         save(figure, path)
-    return len(steps)
+    return len(chosen)
 
 
-def draw_gif(film: Film, path: Path) -> int:
-    """Draws every step of a film as a frame of an animated GIF, which repeats for ever; returns how many.
+def draw_gif(reel: Reel, path: Path) -> int:
+    """Draws every picture of a film as a frame of an animated GIF, which repeats for ever; returns how many.
 
     Raises:
         TilencaError: see `tilenca.views.plots.save`.
     """
-    frames = []
     with styled():
-        for step in range(len(film.shown)):
-            frames.append(_frame(film, step))
-    times = [FRAME_MS] * (len(frames) - 1) + [LAST_FRAME_MS]
+        frames = [_frame(reel, number) for number in range(len(reel.pictures))]
+    times = [round(1000 * picture.seconds) for picture in reel.pictures]
     try:
         frames[0].save(path, save_all=True, append_images=frames[1:], duration=times, loop=0)
     except OSError as error:
@@ -202,12 +208,15 @@ def draw_gif(film: Film, path: Path) -> int:
     return len(frames)
 
 
-def _frame(film: Film, step: int) -> Image.Image:
-    rows, cols = len(film.shape.rows), len(film.shape.rows[0])
-    width = max(GIF_TILE_IN * cols + 2 * MARGIN_IN, GIF_WIDTH_IN)
-    figure = Figure(figsize=(width, GIF_TILE_IN * rows + GIF_CAPTION_IN + MARGIN_IN), dpi=GIF_DPI)
-    _caption(figure, (width / 2, GIF_CAPTION_IN / 2), film, step)
-    _panel(figure, ((width - GIF_TILE_IN * cols) / 2, GIF_CAPTION_IN), GIF_TILE_IN, film, step)
+def _frame(reel: Reel, number: int) -> Image.Image:
+    rows, cols = reel.size
+    tile_in = min(GIF_TILE_IN, GIF_WIDEST_IN / cols)
+    width = max(tile_in * cols + 2 * MARGIN_IN, GIF_WIDTH_IN)
+    top = TITLE_IN + GIF_CAPTION_IN
+    figure = Figure(figsize=(width, top + tile_in * rows + MARGIN_IN), dpi=GIF_DPI)
+    _title(figure, reel)
+    _caption(figure, (width / 2, TITLE_IN + GIF_CAPTION_IN / 3), reel, number)
+    _panel(figure, ((width - tile_in * cols) / 2, top), tile_in, reel, number)
     with io.BytesIO() as png:
         figure.savefig(png, format="png")
         return Image.open(png).convert("RGB").quantize(method=Image.Quantize.MEDIANCUT)

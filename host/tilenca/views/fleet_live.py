@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import PurePath
 from textwrap import wrap
 
@@ -21,6 +21,8 @@ REDRAW_S = 0.25
 LOG_LINES = 200
 LEAST_LOG = 4
 RATE_S = 2.0
+LOG_INDENT = 13  # of the second line of a piece of news, below what comes after the time
+MOST_NAMED = 4
 
 
 class LiveView:
@@ -64,7 +66,11 @@ class LiveView:
         height -= len(footer)
         body = self._body(grid, width, height - 1 - LEAST_LOG)
         room = max(height - len(body) - 2, 0)
-        log = [self._log_line(news) for news in list(self._log)[-room:]] if room else []
+        log = (
+            [line for news in list(self._log)[-room:] for line in self._log_lines(news, width)][-room:]
+            if room
+            else []
+        )
         lines = [self._head(grid), *body, *log][: max(height, 0)] + footer
         for line in lines:
             line.truncate(width, overflow=self._overflow)
@@ -92,7 +98,7 @@ class LiveView:
         parts = [
             f"{len(cells)} tiles",
             ", ".join(f"{count} show {label or 'nothing'}" for label, count in shown.most_common()),
-            *(f"{count} {what}" for what, count in Counter(c.trouble for c in cells if c.trouble).items()),
+            *_troubles(cells),
             f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
             _counted(sum(view.damaged for view in views), "damaged line"),
             _counted(sum(view.total("corrupt") or 0 for view in views), "corrupt frame"),
@@ -100,14 +106,30 @@ class LiveView:
         ]
         return Text("  ".join(filter(None, parts)), style="bold")
 
-    def _log_line(self, news: News) -> Text:
+    def _log_lines(self, news: News, width: int) -> list[Text]:
+        """One piece of news, in as many lines as it takes: a remedy stands at its end."""
         # The folder of a port tells nothing, and takes the room of the rest on a narrow terminal.
-        return Text(news_line(news, PurePath(news.port).name), "yellow" if news.bad else "")
+        told = news_line(news, PurePath(news.port).name)
+        indent = " " * min(LOG_INDENT, width // 3)
+        style = "yellow" if news.bad else ""
+        return [Text(line, style) for line in wrap(told, max(width, 1), subsequent_indent=indent)]
 
 
 def _counted(count: int, what: str) -> str:
     """So many of them; nothing where there are none."""
     return f"{count:,} {what}{'s' * (count != 1)}" if count else ""
+
+
+def _troubles(cells: Iterable[Cell]) -> Iterator[str]:
+    """Who cannot be heard: by name where they are few."""
+    by_trouble: dict[str, list[Cell]] = {}
+    for cell in cells:
+        if cell.trouble:
+            by_trouble.setdefault(cell.trouble, []).append(cell)
+    for trouble, those in by_trouble.items():
+        names = [str(cell.tile) for cell in those if cell.tile is not None]
+        named = len(names) == len(those) <= MOST_NAMED
+        yield f"{len(those)} {trouble}" + (f" (tile {', '.join(names)})" if named else "")
 
 
 class _Screen:

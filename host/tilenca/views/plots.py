@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.project import install_remedy
-from tilenca.views.abilities import QUESTIONS
+from tilenca.views.abilities import QUESTIONS, Targets
 
 try:
     from matplotlib import style
@@ -97,6 +98,7 @@ def plot_history(
     path: Path,
     columns: Sequence[str] = HISTORY,
     title: str = "Training",
+    targets: Mapping[str, Targets] = MappingProxyType({}),
 ) -> None:
     """Draws loss and agreement over the iterations of a training run.
 
@@ -106,6 +108,8 @@ def plot_history(
         columns: `iteration`, `loss`, `agreement`, and any number of measured columns named like `@60` or
             `@sizes`; others are left out.
         title: stands above.
+        targets: of the measured columns, by their names without `@`; the least one of each is a mark at the
+            right edge, and the legend says how many the model holds in the end.
 
     Raises:
         UsageError: no rows, a column is missing, or what `save` says.
@@ -124,7 +128,7 @@ def plot_history(
         upper, lower = figure.subplots(2, 1, sharex=True)
         figure.suptitle(title, x=0.02, ha="left", fontsize=13, fontweight="bold")
         _draw_loss(upper, data["iteration"], data["loss"])
-        _draw_agreement(lower, data)
+        _draw_agreement(lower, data, targets)
         save(figure, path)
 
 
@@ -174,14 +178,30 @@ def _as_loss(axes: Axes, least: float) -> None:
     axes.set_ylabel("loss per tile")
 
 
-def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]]) -> None:
+def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]], targets: Mapping[str, Targets]) -> None:
     _draw_line(axes, data["iteration"], data["agreement"], 0, "training samples", INK)
     measured = sorted((_place(name[1:]), name) for name in data if name.startswith("@"))
     for place, name in measured:
-        _draw_line(axes, data["iteration"], data[name], place, _question(name[1:]))
+        target = targets.get(name[1:])
+        _draw_line(axes, data["iteration"], data[name], place, _question(name[1:]) + _held(target))
+        if target is not None:
+            edge = axes.get_yaxis_transform()
+            axes.plot(
+                [1.0],
+                [target.least],
+                marker=5,
+                markersize=9,
+                color=_colour(place),
+                transform=edge,
+                clip_on=False,
+            )
     if measured:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, fontsize="small")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3, fontsize="small")
     _as_agreement(axes)
+
+
+def _held(target: Targets | None) -> str:
+    return "" if target is None else f": {target.held} of {target.given} targets"
 
 
 def _as_agreement(axes: Axes) -> None:
@@ -223,7 +243,7 @@ def _draw_line(
     """
     known = ~np.isnan(y)
     x, y = x[known], y[known]
-    colour, dashes = colour or LINES[number % len(LINES)], DASHES[number % len(DASHES)]
+    colour, dashes = colour or _colour(number), DASHES[number % len(DASHES)]
     few = len(x) < SMOOTHED
     if not few:
         axes.plot(x, y, color=colour, linewidth=0.8, alpha=0.3)
@@ -237,6 +257,10 @@ def _draw_line(
         marker="o" if few else "",
         markersize=4,
     )
+
+
+def _colour(number: int) -> str:
+    return LINES[number % len(LINES)]
 
 
 def _smooth(values: NDArray[np.float64], reach: int) -> NDArray[np.float64]:

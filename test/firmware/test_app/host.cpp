@@ -72,9 +72,9 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     CHECK(tile.settings().updates == 30);
     CHECK(answer("SET,brightness,9").find("$ACK,7,SET,brightness,9*") == 0);
     CHECK(answer("SET,leds,0").find("$ACK,7,SET,leds,0*") == 0);
-    CHECK(tile.settings().leds_off == 1);
+    CHECK(tile.settings().leds == kLedsDark);
     CHECK(answer("SET,leds,1").find("$ACK,7,SET,leds,1*") == 0);
-    CHECK(tile.settings().leds_off == 0);
+    CHECK(tile.settings().leds == kLedsLinks);
     CHECK(answer("SET,id,9") == line_of("answer to a new id"));
     answer("SET,preset,default");
     CHECK(tile.settings().period_ms == kDefaults.period_ms);
@@ -112,6 +112,14 @@ TEST_CASE_FIXTURE(Fixture, "a marking that EEPROM does not keep is told, and the
     CHECK(tile.settings().revision == 0);
     CHECK(answer("SET,period,20") == line_of("answer to a period"));
     CHECK(answer("CHIP").find(",,*") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture, "the link LEDs show what is missing only where the model says it") {
+    CHECK(answer("SET,leds,2") == line_of("a value out of range"));
+    model.directions = kSides;
+    CHECK(answer("SET,leds,2").find("$ACK,7,SET,leds,2*") == 0);
+    CHECK(tile.settings().leds == kLedsMissing);
+    CHECK(answer("SET,leds,3") == line_of("a value out of range"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
@@ -221,9 +229,41 @@ TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its li
     CHECK(appearance_of(tile, false, 256).leds == 0x9);
     CHECK(appearance_of(tile, false, 512).leds == 0x1);
     Settings dark = tile.settings();
-    dark.leds_off = 1;
+    dark.leds = kLedsDark;
     tile.apply(dark);
     CHECK(appearance_of(tile, false, 256).leds == 0);
+    dark.leds = kLedsMissing; // from EEPROM, written for another model: this one has no directions
+    tile.apply(dark);
+    CHECK(appearance_of(tile, false, 256).leds == 0x9);
+}
+
+TEST_CASE("a tile whose model has directions shows by a setting where a tile is missing") {
+    // Two classes; every update adds 1280 to the score of east, and takes as much from that of north.
+    const std::vector<int8_t> zeros(35, 0);
+    const std::vector<int16_t> growth = {0, -1280, 1280, 0, 0, 0, 0};
+    const LayerStream hidden1(35, 1, zeros.data(), growth.data());
+    const LayerStream hidden2(1, 1, zeros.data(), growth.data());
+    const LayerStream output(1, 7, zeros.data(), growth.data());
+    const std::vector<Look> looks(2);
+    const Model model = {
+        1, 2, {hidden1.layer(), hidden2.layer(), output.layer()}, FlashView<Look>(looks.data()), kSides};
+    Tile tile(model, {7, 100, 0, 255, kLedsMissing}, 0);
+    uint32_t now_ms = 0;
+    const auto update_until = [&](uint32_t number) {
+        while (tile.updates() < number) {
+            REQUIRE(++now_ms < 1000);
+            tile.tick(now_ms);
+        }
+    };
+    CHECK(tile.missing() == kSides);
+    update_until(3); // 3840, a message of 30
+    CHECK(tile.missing() == kSides);
+    CHECK(appearance_of(tile, false, 0).leds == 0);
+    update_until(4);
+    CHECK(tile.missing() == index_of(Side::East));
+    CHECK(appearance_of(tile, false, 0).leds == 1 << index_of(Side::East));
+    tile.apply({7, 100, 0, 255, kLedsLinks});
+    CHECK(appearance_of(tile, false, 0).leds == 0);
 }
 
 TEST_CASE_FIXTURE(Fixture, "brightness scales a colour") {

@@ -36,7 +36,9 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
     }
     return std::to_string(settings.tile_id) + " " + std::to_string(settings.period_ms) + " " +
            std::to_string(settings.updates) + " " + std::to_string(settings.brightness) +
-           (settings.leds_off ? " 0" : " 1");
+           (settings.leds == kLedsDark    ? " 0"
+            : settings.leds == kLedsLinks ? " 1"
+                                          : " 2");
 }
 
 } // namespace
@@ -63,7 +65,7 @@ TEST_CASE("writing gives the block of every case that is not ignored") {
         }
         CHECK(is_blank(block) == (std::string(settings_case.name) == "erased"));
     }
-    CHECK(written == 4);
+    CHECK(written == 5);
 }
 
 TEST_CASE("a block with any one bit flipped is ignored") {

@@ -56,6 +56,14 @@ TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
     CHECK(text_of(sentence) == line_of("hello of tile 7"));
 }
 
+TEST_CASE_FIXTURE(Fixture, "hello says whether the model has directions") {
+    const Model directed = {0xBEEF, 2, model.network, model.looks, kSides};
+    const Tile tile(directed, {7, 2000, 30, 128}, 0);
+    Sentence sentence;
+    write_hello(tile, {0x0A, 0x00C0FFEE, {}}, &sentence);
+    CHECK(text_of(sentence) == line_of("hello of a tile with directions"));
+}
+
 TEST_CASE_FIXTURE(Fixture, "a tile that shows nothing yet says so") {
     const Tile tile(model, {0, 100, 0, 255}, 0);
     Sentence sentence;

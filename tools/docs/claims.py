@@ -1,0 +1,53 @@
+"""The numbers of the README are those of the report: each stands in a link to its row of docs/RESULTS.md.
+
+`PYTHONPATH=tools python -m docs.claims` puts the rows' values into the links; `--check` only compares.
+"""
+
+import argparse
+import re
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+README, RESULTS = ROOT / "README.md", ROOT / "docs" / "RESULTS.md"
+ROW = re.compile(r'^\| <a id="([^"]+)"></a>[^|]*\| ([^|]+) \|', re.MULTILINE)
+CLAIM = re.compile(r"\[([^\]]*)\]\(docs/RESULTS\.md#([^)]+)\)")
+
+
+def measured(results: str) -> dict[str, str]:
+    """The value of each row of the report's Markdown, by its key."""
+    return {key: value.strip() for key, value in ROW.findall(results)}
+
+
+def filled(text: str, values: Mapping[str, str]) -> str:
+    """The text with the measured value in each link to a row.
+
+    Raises:
+        KeyError: a link leads to no row; it names the key.
+    """
+    return CLAIM.sub(lambda claim: f"[{values[claim[2]]}](docs/RESULTS.md#{claim[2]})", text)
+
+
+def main() -> int:
+    """Fills the README, or checks it; 1 where a number is not the measured one."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="compare only")
+    check: bool = parser.parse_args().check
+    text = README.read_text(encoding="utf-8")
+    try:
+        right = filled(text, measured(RESULTS.read_text(encoding="utf-8")))
+    except KeyError as error:
+        print(f"{README.name}: links to {error}, which is no row of {RESULTS.name}", file=sys.stderr)
+        return 1
+    if check and right != text:
+        print(
+            f"{README.name}: has other numbers than {RESULTS.name}; run it without --check", file=sys.stderr
+        )
+        return 1
+    README.write_text(right, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
