@@ -123,11 +123,11 @@ class BoardFaults(Faults):
             end = (fault.tile - 1, SIDES.index(fault.side))
             if any(end in (link[:2], link[2:]) for link in self.links):
                 raise fault.refuse("there is a cable; a plug goes on a side without a neighbour")
-        self._plan(fault.from_s, partial(self._begin, fault))
+        self._plan(fault.from_s, partial(self._begin_fault, fault))
         if fault.kind == "resonator":
             self._plan(_changed_s(fault.from_s), partial(self._drift, fault, 0.0))
         if fault.to_s is not None:
-            self._plan(fault.to_s, partial(self._end, fault))
+            self._plan(fault.to_s, partial(self._end_fault, fault))
             if fault.kind == "resonator":
                 self._plan(_changed_s(fault.to_s), partial(self._drift, fault, 0.0))
 
@@ -143,7 +143,7 @@ class BoardFaults(Faults):
                 act()
         return sorted(restarted)
 
-    def _begin(self, fault: BoardFault) -> None:
+    def _begin_fault(self, fault: BoardFault) -> None:
         tile = self.array[fault.tile - 1]
         match fault.kind, fault.values:
             case "high" | "low" as level, (port, bit):
@@ -157,7 +157,7 @@ class BoardFaults(Faults):
             case _:
                 self._going[fault] = Plug(self.array, tile, SIDES.index(fault.side)).play
 
-    def _end(self, fault: BoardFault) -> None:
+    def _end_fault(self, fault: BoardFault) -> None:
         tile = self.array[fault.tile - 1]
         self._going.pop(fault, None)
         match fault.kind, fault.values:
