@@ -170,7 +170,7 @@ void load_settings() {
 
 } // namespace
 
-void setup() {
+__attribute__((cold)) void setup() { // cold: for size, since flash is short
     const board::Fuses fuses = board::fuses();
     boot = {board::reset_cause(), board::firmware_id(), {fuses.low, fuses.high, fuses.extended, fuses.lock}};
     if (boot.reset_cause & board::kWatchdogReset) {

@@ -50,7 +50,7 @@ constexpr int kForEver = 1 << 30;
 
 bool same(const Settings& a, const Settings& b) {
     return a.tile_id == b.tile_id && a.period_ms == b.period_ms && a.updates == b.updates &&
-           a.brightness == b.brightness && a.leds_off == b.leds_off && a.revision == b.revision &&
+           a.brightness == b.brightness && a.leds == b.leds && a.revision == b.revision &&
            a.serial == b.serial;
 }
 
@@ -146,7 +146,7 @@ void commands(const uint8_t* bytes, size_t size) {
             more = true;
         }
         const Settings& now = tile.settings();
-        must(now.period_ms >= kMinPeriodMs && now.period_ms <= kMaxPeriodMs && now.leds_off <= 1,
+        must(now.period_ms >= kMinPeriodMs && now.period_ms <= kMaxPeriodMs && now.leds <= kLedsMissing,
              "a setting out of range");
     }
     must(same(Board(board.bytes).load(), tile.settings()), "EEPROM has other settings than are in force");
@@ -171,7 +171,7 @@ void settings(const uint8_t* bytes, size_t size) {
         board.bytes[i - 1] = bytes[i];
     }
     const Settings found = board.load();
-    must(found.period_ms >= kMinPeriodMs && found.period_ms <= kMaxPeriodMs && found.leds_off <= 1,
+    must(found.period_ms >= kMinPeriodMs && found.period_ms <= kMaxPeriodMs && found.leds <= kLedsMissing,
          "a setting out of range");
     must(same(Board(board.bytes).load(), found), "another start finds other settings");
     Settings wanted = found;

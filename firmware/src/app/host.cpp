@@ -2,6 +2,10 @@
 
 #include <string.h>
 
+#ifdef __AVR__
+#pragma GCC optimize("Os") // it runs once in a while, and flash is short
+#endif
+
 namespace tilenca {
 
 namespace {
@@ -19,7 +23,7 @@ constexpr uint8_t kFields[kNone] = {1, 1, 3, 0, 2, 1}; // the name is one; MARK 
 
 enum Setting : uint8_t { kId, kPeriod, kUpdates, kBrightness, kLeds, kNoSetting };
 constexpr const char* kSettings[kNoSetting] = {"id", "period", "updates", "brightness", "leds"};
-constexpr uint16_t kMost[kLeds] = {0xFF, kMaxPeriodMs, 0xFFFF, 0xFF}; // of the LEDs, the model decides
+constexpr uint16_t kMost[kLeds] = {0xFF, kMaxPeriodMs, 0xFFFF, 0xFF}; // of the LEDs: by the model
 
 // The index of a name, or the number of names.
 template <uint8_t kNames>

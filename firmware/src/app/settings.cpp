@@ -2,6 +2,10 @@
 
 #include "core/crc16.h"
 
+#ifdef __AVR__
+#pragma GCC optimize("Os") // it runs once in a while, and flash is short
+#endif
+
 namespace tilenca {
 
 namespace {

@@ -14,7 +14,6 @@ from tilenca.emulator.array import Array
 from tilenca.emulator.board_faults import BoardFault, BoardFaults
 from tilenca.emulator.eeprom_files import load_eeprom
 from tilenca.emulator.fault_spec import FaultSpec
-from tilenca.emulator.faults import Faults
 from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile

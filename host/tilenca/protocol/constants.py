@@ -38,8 +38,8 @@ SETTING_RANGES = {
     "leds": (0, 2),
 }
 PRESETS = ("paper", "default")
-MISSING = 32  # a direction's score above which a tile is missing there, as a message (section 4)
 # The marking of a board in EEPROM, twice from this address.
 MARKING_AT = 2 * SETTINGS_SIZE
 MAX_REVISION = 0xFF
 MAX_SERIAL = 0xFFFF
+MISSING = 32  # a direction's score above which a tile is missing there, as a message (section 4)

@@ -86,14 +86,6 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     CHECK(memory.bytes == memory_of({9, 100, 65535, 9}).bytes);
 }
 
-TEST_CASE_FIXTURE(Fixture, "the link LEDs show what is missing only where the model says it") {
-    CHECK(answer("SET,leds,2") == line_of("a value out of range"));
-    model.directions = kSides;
-    CHECK(answer("SET,leds,2").find("$ACK,7,SET,leds,2*") == 0);
-    CHECK(tile.settings().leds == kLedsMissing);
-    CHECK(answer("SET,leds,3") == line_of("a value out of range"));
-}
-
 TEST_CASE_FIXTURE(Fixture, "a marking is kept for good, unless the command says that it is to be replaced") {
     CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
     CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
@@ -120,6 +112,14 @@ TEST_CASE_FIXTURE(Fixture, "a marking that EEPROM does not keep is told, and the
     CHECK(tile.settings().revision == 0);
     CHECK(answer("SET,period,20") == line_of("answer to a period"));
     CHECK(answer("CHIP").find(",,*") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture, "the link LEDs show what is missing only where the model says it") {
+    CHECK(answer("SET,leds,2") == line_of("a value out of range"));
+    model.directions = kSides;
+    CHECK(answer("SET,leds,2").find("$ACK,7,SET,leds,2*") == 0);
+    CHECK(tile.settings().leds == kLedsMissing);
+    CHECK(answer("SET,leds,3") == line_of("a value out of range"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
