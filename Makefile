@@ -25,8 +25,8 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web demo test test-web check static format-check lint \
-	imports types budgets sanitize docs format train bench sweep soak report web page-bundle wheel clean
+.PHONY: help setup setup-demo setup-train setup-test setup-check setup-docs setup-web setup-fuzz demo test test-web check static format-check lint \
+	imports types budgets sanitize docs format train bench sweep soak fuzz report web page-bundle wheel clean
 
 help: ## list these targets
 	@echo "make TARGET, where TARGET is one of"
@@ -35,7 +35,7 @@ help: ## list these targets
 setup: setup-demo ## make this clone ready: system packages, .venv, C++ libraries, PlatformIO
 
 setup-train: ## the same, with PyTorch for training
-setup-demo setup-train setup-test setup-check setup-docs setup-web:
+setup-demo setup-train setup-test setup-check setup-docs setup-web setup-fuzz:
 	@sh tools/setup/setup.sh $(@:setup-%=%) $(if $(filter setup%,$(MAKECMDGOALS)),--next)
 
 demo: setup-demo ## build the firmware and let emulated tiles name the ten digits
@@ -57,7 +57,7 @@ web: setup-web ## build the emulator and the simulator for browsers, into build/
 	@$(TOOL) release.web_model models/digits build/web/bundle/digits.json
 
 page-bundle: web ## lay out the page that needs no server of its own, into build/page-bundle
-	@$(TOOL) release.page_bundle build/web/bundle build/page-bundle
+	@$(TOOL) release.page_bundle build/web/bundle build/page-bundle all
 
 test-web: web setup-test ## build for browsers, and run the tests of that
 	@$(PYTHON) -m pytest -n 0 test/web test/browser/test_static_bundle.py
@@ -133,6 +133,9 @@ TIME ?= 600
 soak: setup-test ## let twenty emulated tiles go through everything that can happen, for TIME=600 seconds of theirs
 	@$(PIO) run -s -e $(ENV)
 	@$(TOOL) bench.ordeal --seconds $(TIME)
+
+fuzz: setup-fuzz ## fuzz what parses in the firmware, for TIME=600 seconds; needs clang
+	@$(TOOL) fuzz --seconds $(TIME)
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits
 	@$(PIO) run -s -e $(ENV)

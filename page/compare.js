@@ -4,6 +4,7 @@
 import { SPEEDS, speedWords } from "./components/bar.js";
 import { byId, element, setText } from "./components/dom.js";
 import { DEFAULT_SPEED } from "./stream/address.js";
+import { lossOf, withLoss } from "./stream/faults.js";
 
 const NAMES = /** @type {const} */ (["left", "right"]);
 const given = new URLSearchParams(location.search);
@@ -32,8 +33,7 @@ class Run {
   load() {
     this.query.set("speed", String(speed));
     this.seed.value = this.query.get("seed") ?? "0";
-    const loss = this.query.getAll("fault").map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean);
-    this.loss.value = String(Math.round(Number(loss ?? 0) * 1000) / 10);
+    this.loss.value = String(Math.round(lossOf(this.query.getAll("fault")) * 1000) / 10);
     this.frame.src = `./?embed&${this.query}${location.hash}`;
     note();
   }
@@ -48,10 +48,10 @@ class Run {
   }
 
   changeLoss() {
-    const others = this.query.getAll("fault").filter((fault) => !/^loss=[\d.]+$/.test(fault));
     const share = Math.min(Math.max(Number(this.loss.value) || 0, 0), 100) / 100;
+    const faults = withLoss(this.query.getAll("fault"), share);
     this.query.delete("fault");
-    for (const fault of share > 0 ? [`loss=${share}`, ...others] : others) this.query.append("fault", fault);
+    for (const fault of faults) this.query.append("fault", fault);
     this.load();
   }
 

@@ -11,6 +11,7 @@ import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
+import { LensPanel } from "./components/lens.js";
 import { Lesson } from "./components/lesson.js";
 import { Notice } from "./components/notice.js";
 import { offerOnly, refusal } from "./components/offer.js";
@@ -59,12 +60,20 @@ const deeds = {
   },
   /** @param {string} port @param {Place} place */
   move: (port, [row, col]) => send({ do: "move", port, row, col }),
+  /** @param {import("./stream/groups.js").Shift} shift */
+  shift: (shift) => send({ do: "shift", ...shift }),
   /** @param {string} port @param {string} side @param {boolean} on */
   cut: (port, side, on) => send({ do: "cut", port, side, on }),
   /** @param {string} port @param {boolean} on */
   power: (port, on) => send({ do: "power", port, on }),
   /** @param {string} port @param {boolean} on */
   freeze: (port, on) => send({ do: "freeze", port, on }),
+  /** @param {string} port @param {boolean} on */
+  turn: (port, on) => send({ do: "turn", port, on }),
+  /** @param {string} port @param {number} ppm */
+  skew: (port, ppm) => send({ do: "skew", port, ppm }),
+  /** @param {string} port @param {number} count */
+  instruct: (port, count) => send({ do: "instruct", port, count }),
   /** @param {string} port */
   reset: (port) => send({ do: "reset", port }),
   /** @param {string} port */
@@ -109,13 +118,15 @@ const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }))
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
   link: linkUntilNow,
+  lens: () => board.lens,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text) => notice.say(text),
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
-  replay(events) {
+  replay(events, isCut) {
     source.close();
-    notice.say("A recording: go to any time of it. Reload the page for running tiles.");
+    const cut = isCut ? " Its last line was cut off; it ends before that." : "";
+    notice.say(`A recording: go to any time of it. Reload the page for running tiles.${cut}`);
     source = openRecording(events, listener);
   },
 });
@@ -126,6 +137,7 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
 });
 const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
+const lens = new LensPanel(byId("lens"), byId("scale"), tiles, (one) => board.look(one));
 const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
   say: (text) => notice.say(text),
   choose(wanted) {
@@ -134,7 +146,7 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
     source = (wanted ?? open)(listener);
   },
 });
-listenToKeys(bar, deeds);
+listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1));
 obeyParent(deeds);
 // Only the board and time, for a lesson or an article.
 document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));
@@ -149,10 +161,12 @@ function slideUnder(drawing) {
 
 /** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
-  history.replaceState(null, "", `?${new URLSearchParams({ model: model.id || model.name })}${location.hash}`);
+  const look = new URLSearchParams(location.search).get("look");
+  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }) });
+  history.replaceState(null, "", `?${query}${location.hash}`);
   run.start = null;
   source.close();
-  source = openServer(listener);
+  source = open(listener);
 }
 
 /** The address of the run as it was, with all that hands did, until now. */
@@ -183,6 +197,7 @@ function show(events) {
     if (tiles.runs === 0) run.withoutFaults();
   }
   lesson.update();
+  lens.update();
   board.update(now);
   inspector.update();
   bar.update();
@@ -223,6 +238,7 @@ function tellFailed() {
 const listener = {
   onEvents: show,
   onOpen: () => notice.clear(),
+  onWhole: (events) => recorder.keep(events),
   onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
 };
 // The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.

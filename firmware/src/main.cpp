@@ -159,15 +159,18 @@ void sleep() {
 
 void load_settings() {
     Settings settings = kDefaults;
-    if (store.load(&settings) == SettingsStore<board::Eeprom>::Found::Damage) {
-        telemetry.failed(Error::Settings);
+    for (uint8_t kind = kBlocks;
+         kind-- != 0;) { // settings last: what is to be mended does not delay the start
+        if (store.load(static_cast<Block>(kind), &settings) == SettingsStore<board::Eeprom>::Found::Damage) {
+            telemetry.failed(Error::Settings);
+        }
     }
     tile.apply(settings);
 }
 
 } // namespace
 
-void setup() {
+__attribute__((cold)) void setup() { // cold: for size, since flash is short
     const board::Fuses fuses = board::fuses();
     boot = {board::reset_cause(), board::firmware_id(), {fuses.low, fuses.high, fuses.extended, fuses.lock}};
     if (boot.reset_cause & board::kWatchdogReset) {
@@ -183,6 +186,8 @@ void setup() {
     load_settings();
     board::watchdog_begin();
     write_hello(tile, boot, &sentence);
+    say_sentence();
+    write_chip(tile, boot, &sentence);
     say_sentence();
 }
 

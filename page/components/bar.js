@@ -13,6 +13,7 @@ const MOST_LOSS = 10;
 
 const ICONS = {
   hand: "M8 13V5.5a1.5 1.5 0 0 1 3 0V12m0-1V4a1.5 1.5 0 0 1 3 0v8m0-6.500a1.500 1.500 0 0 1 3 0V15a6 6 0 0 1-6 6 6 6 0 0 1-5-3l-3-5a1.500 1.500 0 0 1 2.500-1.600L8 14",
+  group: "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM17 14v6M14 17h6",
   pencil: "M4 20l1-5L16 4l4 4L9 19l-5 1M14 6l4 4",
   knife: "M3 21l7-7M9 12L19 3c2 4 1 9-5 14z",
   play: "M8 5v14l11-7z",
@@ -25,6 +26,7 @@ const ICONS = {
 /** @type {[Tool, string, string][]} */
 const TOOLS = [
   ["hand", "Hand", "Move tiles, and click one to look into it (H)"],
+  ["group", "Group", "Move all that hangs together; across empty places, break it apart (G)"],
   ["pencil", "Draw", "Put tiles in, and rub them out (D)"],
   ["knife", "Knife", "Cut cables, click to mend one (K)"],
 ];

@@ -1,8 +1,11 @@
 // The board: tiles and empty places as buttons, with the cables over them; by pointer and by keyboard.
 
+/** @import { Lens } from "../stream/lens.js" */
 /** @import { Place } from "../stream/source.js" */
+/** @import { Tile } from "../stream/tile.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 /** @import { Deeds } from "./hands.js" */
+import { clusterOf, isFree } from "../stream/groups.js";
 import { OFFSETS, SIDES } from "../stream/source.js";
 import { Cables } from "./cables.js";
 import { byId, element, setText } from "./dom.js";
@@ -13,7 +16,7 @@ import { View } from "./view.js";
 /** @type {Record<string, number>} */
 const ARROWS = { ArrowUp: 0, ArrowRight: 1, ArrowDown: 2, ArrowLeft: 3 };
 
-/** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "cut">} BoardDeeds */
+/** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "shift" | "cut">} BoardDeeds */
 
 export class Board {
   /** @param {HTMLElement} root @param {Tiles} tiles @param {BoardDeeds} deeds */
@@ -29,13 +32,15 @@ export class Board {
     this.spots = new Map();
     /** @type {string | null} */
     this.selected = null;
+    /** What the colours of the tiles tell; null: their LEDs. @type {Lens | null} */
+    this.lens = null;
     /** The place that Tab leads to. @type {Place} */
     this.at = [0, 0];
-    /** @type {string | null} */
-    this.lifted = null;
+    /** Ports of the tiles in the hand. @type {string[]} */
+    this.lifted = [];
     this.hands = new Hands(root, tiles, this.view, {
       ...deeds,
-      lift: (port, dx, dy, place) => this.lift(port, dx, dy, place),
+      lift: (ports, dx, dy, place) => this.lift(ports, dx, dy, place),
       drop: () => this.drop(),
       stroke: (points) => {
         this.cables.stroke = points;
@@ -57,7 +62,7 @@ export class Board {
     }
     for (const port of this.tiles.dirty) {
       const tile = this.tiles.byPort.get(port);
-      if (tile) this.views.get(port)?.update(tile, port === this.selected);
+      if (tile) this.views.get(port)?.update(tile, port === this.selected, this.lens);
     }
     this.tiles.dirty.clear();
     this.cables.launch(this.tiles.pulses, this.tiles, this.view, now);
@@ -69,6 +74,13 @@ export class Board {
   select(port) {
     for (const one of [this.selected, port]) if (one) this.tiles.dirty.add(one);
     this.selected = port;
+  }
+
+  /** Looks at the tiles in another way. @param {Lens | null} lens */
+  look(lens) {
+    this.lens = lens;
+    this.root.classList.toggle("looks", lens !== null);
+    for (const tile of this.tiles.laid()) this.views.get(tile.port)?.update(tile, tile.port === this.selected, lens);
   }
 
   /** Puts everything in its place. */
@@ -90,7 +102,7 @@ export class Board {
         this.root.append(view.button);
       }
       move(view.button, this.view.corner(...tile.place));
-      view.update(tile, tile.port === this.selected);
+      view.update(tile, tile.port === this.selected, this.lens);
     }
     for (const port of gone) {
       this.views.get(port)?.button.remove();
@@ -134,27 +146,32 @@ export class Board {
     else if (place) this.deeds.put(placeOf(place));
   }
 
-  /** @param {string} port @param {number} dx @param {number} dy @param {Place | null} place */
-  lift(port, dx, dy, place) {
-    if (!this.lifted) this.cables.flights = [];
-    this.lifted = this.cables.lifted = port;
-    this.cables.isStale = true;
-    const button = this.views.get(port)?.button;
-    button?.classList.add("lifted");
-    button?.style.setProperty("translate", `${dx}px ${dy}px`);
+  /** @param {string[]} ports @param {number} dx @param {number} dy @param {Place | null} place of the pointer */
+  lift(ports, dx, dy, place) {
+    if (!this.lifted.length) this.cables.flights = [];
+    this.lifted = ports;
+    this.cables.lift(ports, dx, dy);
+    for (const port of ports) {
+      const button = this.views.get(port)?.button;
+      button?.classList.add("lifted");
+      button?.style.setProperty("translate", `${dx}px ${dy}px`);
+    }
+    const what = ports.length > 1 ? "them" : "it";
     byId("box").hidden = false;
     byId("box").classList.toggle("over", place === null);
-    setText(byId("box"), place ? "Drag it off the board to take it out" : "Let go to take it out");
-    for (const [key, spot] of this.spots) spot.classList.toggle("aim", key === place?.join());
+    setText(byId("box"), place ? `Drag ${what} off the board to take ${what} out` : `Let go to take ${what} out`);
+    for (const [key, spot] of this.spots) spot.classList.toggle("aim", ports.length === 1 && key === place?.join());
   }
 
   drop() {
-    if (!this.lifted) return;
-    const button = this.views.get(this.lifted)?.button;
-    button?.classList.remove("lifted");
-    button?.style.removeProperty("translate");
-    this.lifted = this.cables.lifted = null;
-    this.cables.isStale = true;
+    if (!this.lifted.length) return;
+    for (const port of this.lifted) {
+      const button = this.views.get(port)?.button;
+      button?.classList.remove("lifted");
+      button?.style.removeProperty("translate");
+    }
+    this.lifted = [];
+    this.cables.lift([], 0, 0);
     byId("box").hidden = true;
     for (const spot of this.spots.values()) spot.classList.remove("aim");
   }
@@ -169,6 +186,9 @@ export class Board {
       if (tile && this.tiles.neighbour(tile, side)) {
         this.deeds.cut(tile.port, SIDES[side], !this.tiles.isCut(tile, side));
       }
+    } else if (side !== undefined && (event.ctrlKey || event.metaKey)) {
+      if (!tile || !this.tiles.can("shift")) return;
+      this.carry(tile, side);
     } else if (side !== undefined) {
       this.rove(this.next(side), true);
     } else if ((event.key === "Delete" || event.key === "Backspace") && tile) {
@@ -179,6 +199,15 @@ export class Board {
       return;
     }
     event.preventDefault();
+  }
+
+  /** Moves all that hangs together with a tile by a place; the focus goes along. @param {Tile} tile @param {number} side */
+  carry(tile, side) {
+    const [rows, cols] = OFFSETS[side];
+    const shift = { ports: clusterOf(this.tiles, tile).map(({ port }) => port), rows, cols };
+    if (!isFree(this.tiles, shift)) return;
+    this.deeds.shift(shift);
+    this.at = [this.at[0] + rows, this.at[1] + cols];
   }
 
   /** The next place on a side; where none can be put in, the next tile there. @param {number} side @returns {Place} */

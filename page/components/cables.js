@@ -32,8 +32,10 @@ export class Cables {
     this.flights = [];
     this.isStale = true;
     this.wasFlying = false;
-    /** A tile in the hand, whose cables hang loose. @type {string | null} */
-    this.lifted = null;
+    /** Tiles in the hand: the cables between them come along, and their others hang loose. @type {Set<string>} */
+    this.lifted = new Set();
+    /** How far the hand has carried them, in pixels. */
+    this.carried = [0, 0];
     /** The stroke of the knife, in pixels. @type {[number, number][]} */
     this.stroke = [];
   }
@@ -49,12 +51,19 @@ export class Cables {
     this.isStale = true;
   }
 
+  /** Tiles are in the hand, or none. @param {string[]} ports @param {number} dx @param {number} dy */
+  lift(ports, dx, dy) {
+    this.lifted = new Set(ports);
+    this.carried = [dx, dy];
+    this.isStale = true;
+  }
+
   /** Lets frames fly. @param {Pulse[]} pulses @param {Tiles} tiles @param {View} view @param {number} now */
   launch(pulses, tiles, view, now) {
     if (calm.matches || tiles.pace.speed === 0) return;
     for (const pulse of pulses) {
       const tile = tiles.byPort.get(pulse.from);
-      if (!tile?.place || this.lifted || this.flights.length >= MOST || tiles.isCut(tile, pulse.side)) continue;
+      if (!tile?.place || this.lifted.size || this.flights.length >= MOST || tiles.cableAt(tile, pulse.side) === "cut") continue;
       const [x, y] = view.middle(...tile.place);
       const [down, right] = OFFSETS[pulse.side];
       const baud = down ? COLUMN_BAUD : ROW_BAUD;
@@ -104,8 +113,9 @@ export class Cables {
     for (const tile of tiles.laid()) {
       for (const side of [1, 2]) {
         const other = tiles.neighbour(tile, side);
-        if (!other || this.lifted === tile.port || this.lifted === other.port) continue;
-        const [x, y] = view.middle(...tile.place);
+        if (!other || this.lifted.has(tile.port) !== this.lifted.has(other.port)) continue;
+        const [dx, dy] = this.lifted.has(tile.port) ? this.carried : [0, 0];
+        const [x, y] = view.middle(...tile.place).map((at, axis) => at + [dx, dy][axis]);
         const [down, right] = OFFSETS[side];
         pen.save();
         pen.translate(x + (right * view.size) / 2, y + (down * view.size) / 2);

@@ -1,12 +1,13 @@
-// What a pointer does on the board: pick up a tile, draw, cut. Knows places, and no elements of tiles.
+// What a pointer does on the board: pick up tiles, draw, cut, break apart. Knows places, and no elements of tiles.
 
 /** @import { Place } from "../stream/source.js" */
 /** @import { Tile } from "../stream/tile.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 /** @import { View } from "./view.js" */
+import { breakApart, clusterOf, isFree } from "../stream/groups.js";
 import { OFFSETS, SIDES } from "../stream/source.js";
 
-/** @typedef {"hand" | "pencil" | "knife"} Tool */
+/** @typedef {"hand" | "group" | "pencil" | "knife"} Tool */
 
 // A pointer that moved less has clicked.
 const CLICK_PX = 6;
@@ -59,8 +60,9 @@ function cableNear(at, tiles, view) {
  *   put: (place: Place) => void,
  *   pull: (port: string) => void,
  *   move: (port: string, place: Place) => void,
+ *   shift: (shift: import("../stream/groups.js").Shift) => void,
  *   cut: (port: string, side: string, on: boolean) => void,
- *   lift: (port: string, dx: number, dy: number, place: Place | null) => void,
+ *   lift: (ports: string[], dx: number, dy: number, place: Place | null) => void,
  *   drop: () => void,
  *   stroke: (points: [number, number][]) => void,
  * }} Deeds
@@ -76,7 +78,7 @@ export class Hands {
     /** @type {Tool} */
     this.tool = "hand";
     /** @type {{id: number, start: [number, number], last: [number, number], tile: Tile | undefined,
-     *   moved: boolean, puts: boolean, drawn: Set<string>, points: [number, number][]} | null} */
+     *   group: string[] | null, crossed: [Tile, number][], moved: boolean, puts: boolean, drawn: Set<string>, points: [number, number][]} | null} */
     this.grip = null;
     board.addEventListener("pointerdown", (event) => this.down(event));
     board.addEventListener("pointermove", (event) => this.moved(event));
@@ -96,7 +98,11 @@ export class Hands {
     const at = this.point(event);
     const place = this.view.placeAt(...at);
     const tile = this.tiles.at(...place);
-    this.grip = { id: event.pointerId, start: at, last: at, tile, moved: false, puts: !tile, drawn: new Set(), points: [at] };
+    const isGroup = this.tool === "group" || (this.tool === "hand" && event.shiftKey);
+    const group = isGroup && tile ? clusterOf(this.tiles, tile).map(({ port }) => port) : null;
+    this.grip = {
+      id: event.pointerId, start: at, last: at, tile, group, crossed: [], moved: false, puts: !tile, drawn: new Set(), points: [at],
+    };
     this.board.setPointerCapture(event.pointerId);
     if (this.tool === "pencil") this.draw(place);
   }
@@ -113,11 +119,13 @@ export class Hands {
       for (const [tile, side] of cablesCrossed(grip.last, at, this.tiles, this.view)) {
         if (!this.tiles.isCut(tile, side)) this.deeds.cut(tile.port, SIDES[side], true);
       }
-      grip.points.push(at);
-      this.deeds.stroke(grip.points.slice(-40));
-    } else if (this.tool === "hand" && grip.tile && grip.moved && this.tiles.can("move")) {
+      this.stroke(at);
+    } else if (this.tool === "group" && !grip.tile && grip.moved) {
+      grip.crossed.push(...cablesCrossed(grip.last, at, this.tiles, this.view));
+      this.stroke(at);
+    } else if (this.holds("move", "shift") && grip.tile && grip.moved) {
       const place = this.isInside(at) ? this.view.placeAt(...at) : null;
-      this.deeds.lift(grip.tile.port, at[0] - grip.start[0], at[1] - grip.start[1], place);
+      this.deeds.lift(grip.group ?? [grip.tile.port], at[0] - grip.start[0], at[1] - grip.start[1], place);
     }
     grip.last = at;
   }
@@ -127,20 +135,47 @@ export class Hands {
     const { grip } = this;
     if (!grip || event.pointerId !== grip.id) return;
     const at = this.point(event);
-    if (this.tool === "hand") {
+    if (this.tool === "hand" || this.tool === "group") {
       const place = this.view.placeAt(...at);
       if (!grip.moved) {
         if (grip.tile) this.deeds.select(grip.tile.port);
-        else if (this.tiles.can("put")) this.deeds.put(place);
-      } else if (grip.tile && this.tiles.can("move")) {
-        if (!this.isInside(at)) this.deeds.pull(grip.tile.port);
-        else if (!this.tiles.at(...place)) this.deeds.move(grip.tile.port, place);
+        else if (this.tool === "hand" && this.tiles.can("put")) this.deeds.put(place);
+      } else if (grip.tile && this.holds("move", "shift")) {
+        this.letGoAt(this.isInside(at) ? place : null);
+      } else {
+        for (const shift of breakApart(this.tiles, grip.crossed)) this.deeds.shift(shift);
       }
     } else if (this.tool === "knife" && !grip.moved) {
       const near = cableNear(at, this.tiles, this.view);
       if (near) this.deeds.cut(near[0].port, SIDES[near[1]], !this.tiles.isCut(...near));
     }
     this.letGo();
+  }
+
+  /** Whether what is held can be carried. @param {string} one command for a tile @param {string} group for several */
+  holds(one, group) {
+    return (this.tool === "hand" || this.tool === "group") && this.tiles.can(this.grip?.group ? group : one);
+  }
+
+  /** What is held lands. @param {Place | null} place of the tile under the pointer; null: off the board */
+  letGoAt(place) {
+    const { tile, group } = this.grip ?? {};
+    if (!tile?.place) return;
+    if (!place) {
+      for (const port of group ?? [tile.port]) this.deeds.pull(port);
+    } else if (!group) {
+      if (!this.tiles.at(...place)) this.deeds.move(tile.port, place);
+    } else {
+      const shift = { ports: group, rows: place[0] - tile.place[0], cols: place[1] - tile.place[1] };
+      if ((shift.rows || shift.cols) && isFree(this.tiles, shift)) this.deeds.shift(shift);
+    }
+  }
+
+  /** @param {[number, number]} at */
+  stroke(at) {
+    if (!this.grip) return;
+    this.grip.points.push(at);
+    this.deeds.stroke(this.grip.points.slice(-40));
   }
 
   letGo() {

@@ -5,11 +5,14 @@
 import { MESSAGE_OFFSET } from "../stream/sentences.js";
 import { SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
+import { FULL, channelsOf } from "../stream/lens.js";
 import { element, setText } from "./dom.js";
 import { offerOnly } from "./offer.js";
-import { Settings } from "./settings.js";
+import { Program } from "./program.js";
+import { Settings, numberField, showValue } from "./settings.js";
 
-const FULL = 127; // the largest message
+// Twin of MAX_SKEW_PPM in host/tilenca/protocol/stream_hands.py.
+const MOST_SKEW_PPM = 100_000;
 const SIDE_NAMES = ["North", "East", "South", "West"];
 
 /**
@@ -19,6 +22,9 @@ const SIDE_NAMES = ["North", "East", "South", "West"];
  *   power: (port: string, on: boolean) => void,
  *   freeze: (port: string, on: boolean) => void,
  *   reset: (port: string) => void,
+ *   turn: (port: string, on: boolean) => void,
+ *   skew: (port: string, ppm: number) => void,
+ *   instruct: (port: string, count: number) => void,
  *   press: (port: string) => void,
  *   blink: (port: string) => void,
  *   set: import("./settings.js").Set,
@@ -70,6 +76,11 @@ export class Inspector {
     this.reset = button("Reset", "reset", () => deeds.reset(this.port));
     this.press = button("Press button", "restart", () => deeds.press(this.port));
     this.blink = button("Blink", "blink", () => deeds.blink(this.port));
+    this.turn = button("", "turn", () => deeds.turn(this.port, !this.tile?.turned));
+    this.clock = numberField(
+      { name: "skew", title: "Clock too fast (ppm)", low: -MOST_SKEW_PPM, high: MOST_SKEW_PPM }, "", (ppm) => deeds.skew(this.port, ppm),
+    );
+    this.program = new Program(tiles, deeds.instruct);
     this.settings = new Settings(tiles, deeds.set, () => this.port);
   }
 
@@ -77,6 +88,7 @@ export class Inspector {
   show(port) {
     this.root.hidden = port === null;
     this.port = port ?? "";
+    this.program.choose(this.port);
     this.shape = "";
     this.update();
   }
@@ -100,6 +112,9 @@ export class Inspector {
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
     this.freeze.title = this.tiles.source === "watched" ? "The tile keeps it, also without power, until Thaw" : "";
     for (const one of [this.freeze, this.reset, this.press, this.blink]) one.disabled = !tile.powered;
+    setText(this.turn, tile.turned ? "Turn back" : "Turn by 90°");
+    showValue(this.clock.input, String(tile.skew));
+    this.program.update();
     this.settings.update();
     this.meters.forEach((meter, index) => meter.show(
       tile.state.length ? tile.state[index] - MESSAGE_OFFSET : undefined,
@@ -111,12 +126,8 @@ export class Inspector {
   /** @param {Tile} tile */
   build(tile) {
     const { deeds } = this;
-    const { looks } = this.tiles;
     const hidden = Math.max(0, tile.channels - tile.classes);
-    this.meters = Array.from({ length: tile.channels }, (_, index) => {
-      const look = index < hidden ? undefined : looks[index - hidden];
-      return new Meter(look ? look.label : String(index + 1), look && cssColour(look.rgb));
-    });
+    this.meters = channelsOf(tile, this.tiles.looks).map(({ name, look }) => new Meter(name, look && cssColour(look.rgb)));
     const close = element("button", { type: "button", class: "round plain", "aria-label": "Close", onclick: () => deeds.select(null) }, "×");
     this.links = SIDE_NAMES.map(() => Array.from({ length: 3 }, () => element("td")));
     this.cables = SIDE_NAMES.map((_, side) => element("button", { type: "button", onclick: () => {
@@ -135,10 +146,12 @@ export class Inspector {
       element("header", {}, element("h2", {}, tile.number ? `Tile ${tile.number}` : tile.port), close),
       this.guess,
       element("div", { class: "deeds" }, this.pull, this.power, this.freeze, this.reset, this.press, this.blink),
+      element("section", { "data-needs": "skew", "aria-label": "Faults", class: "settings" }, this.clock.form, this.turn),
       element("h3", {}, "What it thinks"), scores,
       element("h3", {}, "Hidden channels"), others,
       element("h3", {}, "Links"), table,
       element("h3", {}, "Counters"), this.facts,
+      this.program.root,
       element("section", { "data-needs": "set", "aria-label": "Settings" }, element("h3", {}, "Settings"), this.settings.root),
     );
     offerOnly(this.tiles);

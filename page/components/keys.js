@@ -1,19 +1,26 @@
 // Keys that work everywhere on the page, except where one types.
 
 /** @import { Bar, BarDeeds } from "./bar.js" */
+/** @import { LensPanel } from "./lens.js" */
 
 /**
  * @param {Bar} bar
  * @param {BarDeeds} deeds
+ * @param {LensPanel} lens
+ * @param {() => void} instruct one instruction of the tile that is looked into
  */
-export function listenToKeys(bar, deeds) {
+export function listenToKeys(bar, deeds, lens, instruct) {
   /** @type {Record<string, () => void>} */
   const keys = {
     h: () => bar.choose("hand"),
+    g: () => bar.choose("group"),
     d: () => bar.choose("pencil"),
     k: () => bar.choose("knife"),
     r: () => deeds.restart(),
     s: () => deeds.surprise(),
+    i: instruct,
+    l: () => lens.turn(1),
+    L: () => lens.turn(-1),
     ".": () => deeds.step(),
     ",": () => deeds.back(),
     " ": () => bar.toggle(),

@@ -1,8 +1,10 @@
 // The board as a picture: the same look as on the page, drawn at one size.
 
+/** @import { Lens } from "../stream/lens.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { OFFSETS, SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
+import { inkOn, seenThrough, shadeOf } from "../stream/lens.js";
 import { TOKENS } from "./cables.js";
 import { LAMPS, SEGMENTS } from "./tile.js";
 
@@ -18,16 +20,19 @@ const LEAST = 480;
  * @param {CanvasRenderingContext2D} pen at the corner of a tile's face of 100 x 100
  * @param {import("../stream/tile.js").Tile} tile
  * @param {Token} token
+ * @param {Lens | null} lens
  */
-function drawTile(pen, tile, token) {
+function drawTile(pen, tile, token, lens) {
+  const seen = lens && seenThrough(lens, tile);
+  const shade = lens && seen !== null ? shadeOf(lens, seen) : null;
   const led = cssColour(tile.rgb);
   const isDark = tile.rgb.every((part) => part === 0);
   pen.globalAlpha = tile.powered ? 1 : 0.5;
-  pen.fillStyle = token("--housing");
+  pen.fillStyle = shade ? `rgb(${shade.join(" ")})` : token("--housing");
   pen.beginPath();
   pen.roundRect(0, 0, 100, 100, 14);
   pen.fill();
-  if (!isDark) {
+  if (!isDark && !shade) {
     const light = pen.createRadialGradient(50, 50, 0, 50, 50, 70);
     light.addColorStop(0, led.replace(")", " / 46%)"));
     light.addColorStop(0.62, led.replace(")", " / 14%)"));
@@ -38,7 +43,7 @@ function drawTile(pen, tile, token) {
   pen.lineCap = "round";
   const lit = isDark ? "" : SEGMENTS.filter((_, bit) => (tile.segments >> bit) & 1).join("");
   /** @type {[string, number, string][]} */
-  const layers = [
+  const layers = shade ? [[lit, 8.5, inkOn(shade)]] : [
     [SEGMENTS.join(""), 8.5, "rgb(255 255 255 / 6%)"], [lit, 17, led.replace(")", " / 26%)")], [lit, 8.5, led],
   ];
   for (const [path, width, colour] of layers) {
@@ -52,6 +57,12 @@ function drawTile(pen, tile, token) {
     pen.arc(x, y, 2.6, 0, 7);
     pen.fill();
   });
+  if (shade) {
+    pen.fillStyle = inkOn(shade);
+    pen.font = `650 12px ${token("--font")}`;
+    pen.textAlign = "right";
+    pen.fillText(String(seen), 87, 91);
+  }
   pen.globalAlpha = 1;
 }
 
@@ -80,37 +91,63 @@ function drawCables(pen, tiles, tile, token) {
   }
 }
 
+/** The smallest box around tiles, as rows and columns. @param {import("../stream/source.js").Place[]} places */
+export function boxOf(places) {
+  const [rows, cols] = [0, 1].map((axis) => places.map((place) => place[axis]));
+  if (!places.length) return { top: 0, left: 0, rows: 1, cols: 1 };
+  const [top, left] = [Math.min(...rows), Math.min(...cols)];
+  return { top, left, rows: Math.max(...rows) - top + 1, cols: Math.max(...cols) - left + 1 };
+}
+
 /**
- * The tiles and cables with a line of words below, as PNG.
- * @param {Tiles} tiles @param {string} words
- * @returns {Promise<Blob>}
+ * @typedef {{
+ *   words: string, lens: Lens | null, box?: ReturnType<typeof boxOf>, size?: number,
+ * }} Painting what stands below; what the colours tell; which part; pixels of a tile's place
  */
-export function boardPicture(tiles, words) {
+
+/**
+ * Draws the tiles and cables with a line of words below.
+ * @param {HTMLCanvasElement} canvas gets its size
+ * @param {Tiles} tiles @param {Painting} painting
+ */
+export function paintBoard(canvas, tiles, { words, lens, box, size = TILE }) {
   const style = getComputedStyle(document.documentElement);
   const token = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
   const laid = tiles.laid();
-  const [rows, cols] = [0, 1].map((axis) => laid.map((tile) => tile.place[axis]));
-  const [top, left] = [Math.min(...rows), Math.min(...cols)];
-  const canvas = document.createElement("canvas");
-  canvas.width = Math.max(LEAST, (laid.length ? Math.max(...cols) - left + 1 : 0) * TILE + 2 * MARGIN);
-  canvas.height = (laid.length ? Math.max(...rows) - top + 1 : 1) * TILE + 2 * MARGIN + FOOT;
-  const begin = laid.length ? (canvas.width - (Math.max(...cols) - left + 1) * TILE) / 2 : MARGIN;
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const { top, left, rows, cols } = box ?? boxOf(laid.map((tile) => tile.place));
+  const ratio = size / TILE;
+  const width = Math.max(LEAST, cols * TILE + 2 * MARGIN);
+  const height = rows * TILE + 2 * MARGIN + FOOT;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: size !== TILE }));
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.fillStyle = token("--raised");
-  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.fillRect(0, 0, width, height);
   for (const tile of laid) {
     pen.save();
-    pen.translate(begin + (tile.place[1] - left + 0.5) * TILE, MARGIN + (tile.place[0] - top + 0.5) * TILE);
+    pen.translate((width - cols * TILE) / 2 + (tile.place[1] - left + 0.5) * TILE, MARGIN + (tile.place[0] - top + 0.5) * TILE);
     drawCables(pen, tiles, tile, token);
+    if (tile.turned) pen.rotate(Math.PI / 2);
     pen.translate((EDGE - 0.5) * TILE, (EDGE - 0.5) * TILE);
     pen.scale((TILE * (1 - 2 * EDGE)) / 100, (TILE * (1 - 2 * EDGE)) / 100);
-    drawTile(pen, tile, token);
+    drawTile(pen, tile, token, lens);
     pen.restore();
   }
   pen.fillStyle = token("--ink");
   pen.font = `600 22px ${token("--font")}`;
   pen.textAlign = "center";
-  pen.fillText(words, canvas.width / 2, canvas.height - MARGIN, canvas.width - MARGIN);
+  pen.fillText(words, width / 2, height - MARGIN, width - MARGIN);
+}
+
+/**
+ * The same as PNG.
+ * @param {Tiles} tiles @param {Painting} painting
+ * @returns {Promise<Blob>}
+ */
+export function boardPicture(tiles, painting) {
+  const canvas = document.createElement("canvas");
+  paintBoard(canvas, tiles, painting);
   return new Promise((resolve, reject) => {
     canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser makes no picture"))), "image/png");
   });

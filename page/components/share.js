@@ -5,9 +5,11 @@
 /** @import { StreamEvent } from "../stream/source.js" */
 import { parseRecording } from "../stream/recording_file.js";
 import { byId, element, icon } from "./dom.js";
+import { boardFilm } from "./film.js";
 import { boardPicture } from "./picture.js";
 
 const ICON = "M12 15V4M8 8l4-4 4 4M5 12v7h14v-7";
+const FILM_S = 5; // of the wall clock
 const JSON_LINES = "application/jsonl";
 // Twin of HOLE in host/tilenca/page/alone.py.
 const HOLE = "<!-- the recording -->";
@@ -16,8 +18,9 @@ const HOLE = "<!-- the recording -->";
  * @typedef {{
  *   link: () => string,
  *   words: () => string,
+ *   lens: () => import("../stream/lens.js").Lens | null,
  *   say: (text: string) => void,
- *   replay: (events: StreamEvent[]) => void,
+ *   replay: (events: StreamEvent[], isCut: boolean) => void,
  *   compare: () => void,
  *   canAlone: () => boolean,
  * }} ShareDeeds
@@ -45,6 +48,7 @@ export class Share {
     /** @param {string} text @param {string} help @param {() => void} act */
     const row = (text, help, act) => element("div", { class: "row" },
       element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
+    this.film = row("GIF", "The last seconds until now, as the page has shown them", () => this.gif());
     this.alone = row("Web page", "This run until now, as one file that replays in any browser", () => this.page());
     this.compare = row("Compare", "Two runs side by side: another model, drawing, seed, or more lost bytes", () => deeds.compare());
     this.compare.dataset.needs = "arrange";
@@ -53,6 +57,7 @@ export class Share {
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
       element("div", { class: "row", "data-needs": "arrange" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
       row("Picture", "The board as it is now, as PNG", () => this.picture()),
+      this.film,
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
       this.alone,
       this.compare,
@@ -97,7 +102,26 @@ export class Share {
   }
 
   picture() {
-    return this.attempt(async () => download(await boardPicture(this.tiles, this.deeds.words()), this.nameOf("png")));
+    const painting = { words: this.deeds.words(), lens: this.deeds.lens() };
+    return this.attempt(async () => download(await boardPicture(this.tiles, painting), this.nameOf("png")));
+  }
+
+  /** The last seconds, at the speed of the page. */
+  gif() {
+    const to = this.tiles.time;
+    const speed = this.tiles.pace.speed || 1;
+    const from = Math.max(0, to - FILM_S * speed);
+    const button = /** @type {HTMLButtonElement} */ (this.film.firstElementChild);
+    button.disabled = true;
+    this.deeds.say("The GIF is being made.");
+    return this.attempt(async () => {
+      const film = await boardFilm(this.recorder.recording(), { from, to, seconds: (to - from) / speed }, this.deeds.lens());
+      download(film, `tilenca-${this.tiles.seed}-${to.toFixed(2)}s.gif`);
+      this.deeds.say(`The GIF has ${Math.ceil(film.size / 1000)} kB.`);
+    }).finally(() => {
+      button.disabled = false;
+      button.focus();
+    });
   }
 
   /** The page with the recording in it. */
@@ -123,7 +147,8 @@ export class Share {
     this.file.value = "";
     this.dialog.close();
     try {
-      this.deeds.replay(parseRecording(await file.text()));
+      const { events, isCut } = parseRecording(await file.text());
+      this.deeds.replay(events, isCut);
     } catch (error) {
       this.deeds.say(`${file.name}: ${error instanceof Error ? error.message : error}`);
     }

@@ -1,8 +1,10 @@
 // One tile as the board looks: its digit, its light, the lamps of its links, its counters.
 
+/** @import { Lens } from "../stream/lens.js" */
 /** @import { Tile } from "../stream/tile.js" */
 import { SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
+import { inkOn, seenThrough, shadeOf } from "../stream/lens.js";
 import { element, setText, svg } from "./dom.js";
 
 // A digit of 100 x 100, segments a to g, and the point.
@@ -32,10 +34,11 @@ export class TileView {
     this.button.append(this.face);
     this.segments = -1;
     this.said = "";
+    this.shadeText = "";
   }
 
-  /** @param {Tile} tile @param {boolean} isSelected */
-  update(tile, isSelected) {
+  /** @param {Tile} tile @param {boolean} isSelected @param {Lens | null} lens what its colour tells; null: its LED */
+  update(tile, isSelected, lens) {
     const colour = cssColour(tile.rgb);
     if (this.segments !== tile.segments) {
       this.segments = tile.segments;
@@ -48,25 +51,45 @@ export class TileView {
     }
     this.lamps.forEach((lamp, side) => lamp.classList.toggle("on", tile.leds[side] === SIDES[side]));
     setText(this.id, tile.number ? String(tile.number) : "?");
-    setText(this.counter, tile.powered ? String(tile.updates) : "");
-    const mark = tile.trouble || (!tile.powered ? "off" : tile.frozen ? "frozen" : "");
+    const seen = lens && seenThrough(lens, tile);
+    this.shade(lens, seen);
+    setText(this.counter, lens ? String(seen ?? "") : tile.powered ? String(tile.updates) : "");
+    const mark = tile.trouble || (!tile.powered ? "off" : tile.frozen ? "frozen" : tile.turned ? "turned" : "");
+    this.button.classList.toggle("turned", tile.turned);
     this.button.dataset.state = mark;
     setText(this.mark, mark);
-    const words = describe(tile);
+    const words = describe(tile, lens && (seen === null ? `no ${lens.unit}` : `${lens.unit} ${seen}`));
     if (words !== this.said) {
       this.said = words;
       this.button.setAttribute("aria-label", words);
     }
     this.button.setAttribute("aria-pressed", String(isSelected));
   }
+
+  /** Colours the face by a value; null: not at all. @param {Lens | null} lens @param {number | null} value */
+  shade(lens, value) {
+    const colour = lens && value !== null ? shadeOf(lens, value) : null;
+    const text = colour ? `rgb(${colour.join(" ")})` : "";
+    if (this.shadeText === text) return;
+    this.shadeText = text;
+    this.button.classList.toggle("shaded", colour !== null);
+    this.button.style.setProperty("--shade", text);
+    this.button.style.setProperty("--on-shade", colour ? inkOn(colour) : "");
+  }
 }
 
-/** What a screen reader says of a tile. @param {Tile} tile */
-function describe(tile) {
+/** What hands have done to it. @param {Tile} tile */
+function spoiltWords({ frozen, turned, skew }) {
+  const clock = skew ? `clock ${Math.abs(skew)} ppm ${skew > 0 ? "fast" : "slow"}` : "";
+  return [frozen ? "frozen" : "", turned ? "turned by 90 degrees" : "", clock].filter(Boolean).join(", ");
+}
+
+/** What a screen reader says of a tile. @param {Tile} tile @param {string | null} seen what its colour tells */
+function describe(tile, seen) {
   const links = SIDE_WORDS.filter((_, side) => tile.leds[side] === SIDES[side]);
   const place = tile.place ? `, row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : "";
   if (!tile.powered) return `Tile ${tile.number}${place}, ${tile.trouble ? `${tile.trouble}, ${tile.reason}` : "no power"}`;
   const shows = tile.label === "" ? "shows nothing yet" : tile.label === "-" ? "shows a dash" : `shows ${tile.label}`;
   const linked = links.length ? `linked ${links.join(", ")}` : "no links";
-  return [`Tile ${tile.number}${place}`, shows, linked, tile.frozen ? "frozen" : "", tile.trouble].filter(Boolean).join(", ");
+  return [`Tile ${tile.number}${place}`, shows, seen, linked, spoiltWords(tile), tile.trouble].filter(Boolean).join(", ");
 }

@@ -29,6 +29,10 @@ const KINDS = {
     write: ({ port, row, col }) => [numberOf(port), row, col],
     read: ([tile, row, col]) => ({ port: portOf(tile), row: Number(row), col: Number(col) }),
   },
+  shift: {
+    write: ({ ports, rows, cols }) => [ports.map(numberOf).join("-"), rows, cols],
+    read: ([tiles, rows, cols]) => ({ ports: tiles.split("-").map(portOf), rows: Number(rows), cols: Number(cols) }),
+  },
   arrange: {
     write: ({ cells }) => [boardText(cells)],
     read: ([rows, top, left]) => ({
@@ -41,6 +45,8 @@ const KINDS = {
   },
   power: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
   freeze: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
+  turn: { write: ({ port, on }) => [numberOf(port), digit(on)], read: ([tile, on]) => ({ port: portOf(tile), on: on === "1" }) },
+  skew: { write: ({ port, ppm }) => [numberOf(port), ppm], read: ([tile, ppm]) => ({ port: portOf(tile), ppm: Number(ppm) }) },
   reset: { write: ({ port }) => [numberOf(port)], read: ([tile]) => ({ port: portOf(tile) }) },
   noise: { write: ({ loss }) => [loss], read: ([loss]) => ({ loss: Number(loss) }) },
   blink: {

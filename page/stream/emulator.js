@@ -5,11 +5,15 @@ import { Batches } from "./batches.js";
 import { BROKE_OFF } from "./source.js";
 
 /**
+ * The emulator with the model of the page's address, or with its usual one.
  * @param {Listener} listener told of events once for every frame that the browser paints
  * @returns {Source}
  */
 export function openEmulator(listener) {
-  const worker = new Worker(new URL("../emulator/stream/worker.js", import.meta.url), { type: "module" });
+  const address = new URL("../emulator/stream/worker.js", import.meta.url);
+  const model = new URLSearchParams(location.search).get("model");
+  if (model) address.searchParams.set("model", model);
+  const worker = new Worker(address, { type: "module" });
   /** @type {Source["send"]} */
   const send = (command) => worker.postMessage(command);
   const batches = new Batches(listener.onEvents, send);

@@ -8,13 +8,25 @@ import { SIDES } from "./source.js";
 // KIND[=VALUE]@WHERE[:TIMES]
 const PLACED = /^([^@:]+)@([^:]+)(.*)$/;
 const WHERE = /^(\d+)(?:([NESW])|-(\d+))?$/;
-/** What a hand changes with a command; a tile that is plugged in has power and whole cables. */
+/** What a hand changes with a command; a tile that is plugged in has power and whole cables, and lies straight. */
 const CHANGES = new Map([
   ["noise", ["loss"]],
   ["power", ["off"]],
+  ["turn", ["turn"]],
+  ["skew", ["skew"]],
   ["cut", ["cut"]],
-  ...["put", "pull", "move", "arrange"].map((name) => /** @type {[string, string[]]} */ ([name, ["off", "cut"]])),
+  ["shift", ["cut"]],
+  ...["put", "pull", "move", "arrange"].map((name) => /** @type {[string, string[]]} */ ([name, ["off", "cut", "turn"]])),
 ]);
+
+const EVERYWHERE = /^loss=([\d.]+)$/;
+
+/** The share of bytes that faults let get lost on all cables. @param {string[]} faults */
+export const lossOf = (faults) => Number(faults.map((fault) => EVERYWHERE.exec(fault)?.[1]).find(Boolean) ?? 0);
+
+/** The same faults, but for another share of lost bytes. @param {string[]} faults @param {number} share */
+export const withLoss = (faults, share) =>
+  [...(share > 0 ? [`loss=${Number(share.toFixed(3))}`] : []), ...faults.filter((fault) => !EVERYWHERE.test(fault))];
 
 /** The kinds of faults that are from now on as the board shows them. @param {Command} command */
 export const kindsChangedBy = (command) => CHANGES.get(command.do) ?? [];
@@ -37,9 +49,11 @@ export function faultsNow(tiles, given, handled, noise) {
 
 /** @param {Tiles} tiles @param {LaidTile[]} laid @param {number} noise */
 function standingFaults(tiles, laid, noise) {
-  const faults = noise > 0 ? [`loss=${Number(noise.toFixed(3))}`] : [];
+  const faults = withLoss([], noise);
   laid.forEach((tile, index) => {
     if (!tile.powered) faults.push(`off@${index + 1}`);
+    if (tile.turned) faults.push(`turn@${index + 1}`);
+    if (tile.skew) faults.push(`skew=${tile.skew}@${index + 1}`);
     for (const side of [1, 2]) {
       const other = tiles.neighbour(tile, side);
       if (other && tiles.isCut(tile, side)) faults.push(`cut@${index + 1}${SIDES[side]}`);

@@ -16,10 +16,19 @@ export class Recorder {
     this.jumpedTo = -1;
     /** Whether there was no room for more. */
     this.isFull = false;
+    /** Whether it is a recording that is shown: all is kept from the beginning. */
+    this.isWhole = false;
+  }
+
+  /** A recording is shown. @param {StreamEvent[]} recorded of `openRecording` */
+  keep([stream, ...events]) {
+    Object.assign(this, { stream, events, known: events.at(-1)?.time ?? 0, isFull: false, isWhole: true });
+    this.events = this.events.filter((event) => !event.pace);
   }
 
   /** @param {StreamEvent[]} events */
   take(events) {
+    if (this.isWhole) return;
     for (const event of events) this.takeOne(event);
     if (this.events.length <= MOST_EVENTS) return;
     this.events = this.events.filter((event) => event.frame === undefined); // they are the most, and the least
@@ -38,7 +47,7 @@ export class Recorder {
       const { end } = event.pace;
       if (end !== undefined && end < this.known) this.forget(end);
       this.known = Math.max(this.known, event.time);
-    } else if (event.refused === undefined && !this.isFull && event.time >= this.known && event.time > this.jumpedTo) {
+    } else if (event.refused === undefined && !event.chip && !this.isFull && event.time >= this.known && event.time > this.jumpedTo) {
       this.events.push(event);
     }
   }
@@ -50,12 +59,17 @@ export class Recorder {
     this.jumpedTo = -1;
   }
 
-  /** The recording: a line for each event, in order of time; the last one tells how long it is. */
-  text() {
+  /** The recording: its events in order of time; the last one tells how long it is. @returns {StreamEvent[]} */
+  recording() {
     const [run, ...rest] = this.events;
-    if (!this.stream || !run) return "";
+    if (!this.stream || !run) return [];
     const sorted = [...rest].sort((one, other) => one.time - other.time);
     const end = { time: this.known, pace: { speed: 1, paused: true, share: 1, end: this.known } };
-    return [this.stream, run, ...sorted, end].map((event) => `${JSON.stringify(event)}\n`).join("");
+    return [this.stream, run, ...sorted, end];
+  }
+
+  /** The same as a file: a line for each event. */
+  text() {
+    return this.recording().map((event) => `${JSON.stringify(event)}\n`).join("");
   }
 }

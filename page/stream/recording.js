@@ -9,7 +9,7 @@ const TAKES = ["open", "pace", "step", "seek", "rest"];
 /** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event @param {number} place */
 function subjectOf(event, place) {
   if (event.note !== undefined) return `note ${place}`;
-  const kind = ["place", "open", "display", "cable", "health", "classes"].find((one) => one in event);
+  const kind = ["place", "open", "display", "cable", "fault", "health", "classes"].find((one) => one in event);
   if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
   if (event.raw === undefined) return "";
   const [name, , side] = event.raw.split(",");
@@ -29,7 +29,7 @@ export function openOwnRecording(listener) {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");
   /** @param {string} text */
   const begin = (text) => {
-    if (!isClosed) source = openRecording(parseRecording(text), listener);
+    if (!isClosed) source = openRecording(parseRecording(text).events, listener);
   };
   const read = async () => (inside ? inside.textContent ?? "" : (await fetch(`recording.jsonl${token ? `?token=${token}` : ""}`)).text());
   read().then(begin).catch((error) => {
@@ -45,7 +45,7 @@ export function openOwnRecording(listener) {
 }
 
 /**
- * @param {StreamEvent[]} recorded of `parseRecording`
+ * @param {StreamEvent[]} recorded the events of `parseRecording`
  * @param {Listener} listener
  * @returns {Source}
  */
@@ -56,6 +56,7 @@ export function openRecording(recorded, listener) {
   let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
   /** @type {StreamEvent[]} */
   let waiting = [{ ...first, source: "recording", of: first.of ?? first.source, takes: TAKES }];
+  listener.onWhole?.(recorded);
   let before = performance.now();
   let frame = requestAnimationFrame(tick);
 

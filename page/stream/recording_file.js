@@ -7,6 +7,7 @@ const MOST_EVENTS = 2_000_000;
 const LONGEST_S = 1e7;
 const MOST_PLACE = 1000;
 const MOST_PERIOD_MS = 60_000;
+const BEGINNING = 2; // lines that each one has
 const CHOOSE = "choose a recording (.jsonl)";
 
 /** @typedef {(value: any, event: any) => boolean} Check */
@@ -50,6 +51,7 @@ const SUBJECTS = {
   refused: [isText, false],
   place: [(place) => place === null || (isListOf(place, (one) => isWhole(one, -MOST_PLACE, MOST_PLACE)) && place.length === 2), true],
   cable: [(cable, event) => ["cut", "whole"].includes(cable) && isSide(event.side), true],
+  fault: [(fault) => isObject(fault) && typeof fault.turned === "boolean" && isIn(fault.skew, -1e6, 1e6), true],
   raw: [isText, true],
   open: [(open, event) => typeof open === "boolean" && isText(event.reason ?? ""), true],
   display: [(show) => isObject(show) && isWhole(show.segments, 0, 255) && isColour(show.rgb) && isText(show.leds) && show.leds.length === 4, true],
@@ -87,19 +89,24 @@ function parsed(line) {
 }
 
 /**
- * The events of a file, in order of time: the first one of the stream, and those of the run.
+ * The events of a file, in order of time: the first one of the stream, and those of the run. A last line that was cut
+ * off, since whoever wrote it was stopped, is left out.
  * @param {string} text
- * @returns {StreamEvent[]}
+ * @returns {{events: StreamEvent[], isCut: boolean}}
  * @throws {Error} it is none; in words for a person
  */
 export function parseRecording(text) {
   /** @type {StreamEvent[]} */
   const events = [];
+  const lines = text.split("\n");
   let number = 0;
-  for (const line of text.split("\n")) {
+  let isCut = false;
+  for (const line of lines) {
     number++;
     if (line.trim() === "") continue;
     const event = parsed(line);
+    isCut = event === null && number === lines.length && number > BEGINNING;
+    if (isCut) break;
     if (number === 1 && isObject(event) && (event.raw !== undefined || event.open !== undefined)) {
       throw new Error("it is of --record, and not of the page: tilenca page --replay shows it");
     }
@@ -113,5 +120,5 @@ export function parseRecording(text) {
   const [first, run, ...rest] = events;
   if (first?.stream === undefined || !run?.run) throw new Error(`it does not begin as a recording of the page does; ${CHOOSE}`);
   if (rest.some((event) => event.run || event.stream !== undefined)) throw new Error(`it has more than one run; ${CHOOSE}`);
-  return [first, run, ...rest.sort((one, other) => one.time - other.time)];
+  return { events: [first, run, ...rest.sort((one, other) => one.time - other.time)], isCut };
 }

@@ -5,12 +5,18 @@
 /** @import { Tiles } from "./tiles.js" */
 import { known, readAddress, writeAddress } from "./address.js";
 import { MOST_DEEDS, MOST_TEXT } from "./deeds.js";
-import { faultsNow, kindsChangedBy } from "./faults.js";
+import { faultsNow, kindsChangedBy, lossOf } from "./faults.js";
 
 export const TOO_MUCH = "Too much was done for a link: it is that of the board as it lies now. Save a recording instead.";
 
 // What of an address is no part of the run.
-const KEPT = ["embed", "lesson"];
+const KEPT = ["embed", "lesson", "look"];
+
+/** What the address says of these, as its end. @param {...string} names */
+function kept(...names) {
+  const given = new URLSearchParams(location.search);
+  return names.filter((name) => given.has(name)).map((name) => `&${name}=${encodeURIComponent(given.get(name) ?? "")}`).join("");
+}
 
 export class Run {
   /** @param {Tiles} tiles @param {(command: Command) => void} send to the source */
@@ -55,7 +61,7 @@ export class Run {
     this.opened = { ...wanted };
     this.handled.clear();
     for (const { deed } of wanted.deeds) for (const kind of kindsChangedBy(deed)) this.handled.add(kind);
-    this.noise = Number(wanted.faults.map((fault) => /^loss=([\d.]+)$/.exec(fault)?.[1]).find(Boolean) ?? 0);
+    this.noise = lossOf(wanted.faults);
     const { cells, seed, speed, faults, spread, until } = wanted;
     const planned = wanted.deeds.map(({ time, deed }) => [time, deed]);
     this.send({ do: "open", cells, seed, speed, faults, spread_s: spread, until_s: until, deeds: planned });
@@ -83,7 +89,7 @@ export class Run {
     const deeds = tiles.deeds.filter(({ time }) => time <= until);
     const run = { ...opened, speed: this.start?.speed ?? opened.speed, model: this.start?.model ?? "", until, deeds };
     if (deeds.length > MOST_DEEDS || JSON.stringify(run).length > MOST_TEXT) return null;
-    return writeAddress(run, tiles.drawings);
+    return writeAddress(run, tiles.drawings) + kept("look");
   }
 
   /** Notes what lies on the board now, in `start` and in the address; returns the name of the drawing, or "". */
@@ -94,9 +100,7 @@ export class Run {
     start.cells = laid.map((tile) => tile.place);
     const isUp = tiles.time > start.spread + 0.1;
     if (isUp) start.faults = faultsNow(tiles, this.given, this.handled, this.noise);
-    const given = new URLSearchParams(location.search);
-    const kept = KEPT.filter((name) => given.has(name)).map((name) => `&${name}=${given.get(name)}`).join("");
-    const address = writeAddress({ ...start, deeds: [] }, tiles.drawings) + kept;
+    const address = writeAddress({ ...start, deeds: [] }, tiles.drawings) + kept(...KEPT);
     if (address !== location.search) history.replaceState(null, "", address + location.hash);
     return known(start.cells, tiles.drawings)?.name ?? "";
   }

@@ -11,7 +11,7 @@
  *   neighbour: number | null, neighbourSide: string}} LinkSentence
  * @typedef {{name: "TIME", tile: number, uptimeMs: number, computeUs: number, awakePermille: number,
  *   gapUs: number, stackUnused: number, dropped: number}} TimeSentence
- * @typedef {{name: "CHIP", tile: number, fuses: string[]}} ChipSentence
+ * @typedef {{name: "CHIP", tile: number, fuses: string[], revision: number | null, serial: number | null}} ChipSentence
  * @typedef {{name: "BOARD", tile: number, uptimeMs: number, supplyMv: number | null, framingErrors: number[],
  *   lowMs: number[]}} BoardSentence
  * @typedef {{name: "ERROR", tile: number, uptimeMs: number, code: string, text: string}} ErrorSentence
@@ -44,7 +44,7 @@ function checksum(text) {
 /** @type {Record<string, (f: string[]) => Sentence | null>} */
 const PARSERS = {
   HELLO: (f) =>
-    f.length === 10 && Number(f[0]) === PROTOCOL_VERSION
+    (f.length === 10 || f.length === 11) && Number(f[0]) === PROTOCOL_VERSION
       ? {
           name: "HELLO", version: Number(f[0]), tile: Number(f[1]), modelId: f[2], channels: Number(f[3]),
           classes: Number(f[4]), periodMs: Number(f[5]), updates: Number(f[6]), firmwareId: f[8],
@@ -73,7 +73,10 @@ const PARSERS = {
           awakePermille: Number(f[3]), gapUs: Number(f[4]), stackUnused: Number(f[5]), dropped: Number(f[6]),
         }
       : null,
-  CHIP: (f) => (f.length === 5 ? { name: "CHIP", tile: Number(f[0]), fuses: f.slice(1) } : null),
+  CHIP: (f) =>
+    f.length === 7
+      ? { name: "CHIP", tile: Number(f[0]), fuses: f.slice(1, 5), revision: optional(f[5]), serial: optional(f[6]) }
+      : null,
   BOARD: (f) =>
     f.length === 11
       ? {

@@ -18,6 +18,8 @@
  *   pace?: {speed: number, paused: boolean, share: number, end?: number},
  *   place?: Place | null, tile?: number,
  *   cable?: "whole" | "cut",
+ *   chip?: import("./chip.js").Chip,
+ *   fault?: {turned: boolean, skew: number},
  *   raw?: string, asked?: boolean,
  *   open?: boolean, reason?: string,
  *   display?: {segments: number, rgb: number[], leds: string},
@@ -38,6 +40,7 @@
  * @typedef {{
  *   onEvents: (events: StreamEvent[]) => void,
  *   onOpen: () => void,
+ *   onWhole?: (events: StreamEvent[]) => void,
  *   onLost: (seconds: number, code: number) => void,
  * }} Listener
  */

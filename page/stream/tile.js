@@ -9,11 +9,12 @@
  *
  * @typedef {{
  *   port: string, number: number, place: Place | null, powered: boolean, reason: string, frozen: boolean,
+ *   turned: boolean, skew: number,
  *   segments: number, rgb: number[], leds: string,
  *   label: string, margin: number | null, links: string, state: number[], updates: number, uptimeMs: number,
  *   modelId: string, channels: number, classes: number, periodMs: number, brightness: number,
  *   link: Record<string, LinkSentence>, time: TimeSentence | null, board: BoardSentence | null,
- *   error: string, countSide: number,
+ *   error: string, countSide: number, chip: import("./chip.js").Chip | null,
  *   trouble: string, health: Record<string, LinkHealth>,
  * }} Tile
  *
@@ -24,9 +25,10 @@
 export function newTile(port) {
   return {
     port, number: Number(/(\d+)\D*$/.exec(port)?.[1] ?? 0), place: null, powered: false, reason: "", frozen: false,
+    turned: false, skew: 0,
     segments: 0, rgb: [0, 0, 0], leds: "----",
     label: "", margin: null, links: "----", state: [], updates: 0, uptimeMs: 0,
-    modelId: "", channels: 0, classes: 0, periodMs: 0, brightness: 0, link: {}, time: null, board: null, error: "", countSide: -1,
+    modelId: "", channels: 0, classes: 0, periodMs: 0, brightness: 0, link: {}, time: null, board: null, error: "", countSide: -1, chip: null,
     trouble: "", health: {},
   };
 }

@@ -166,6 +166,12 @@ export class Tiles {
       if (event.cable === "cut") this.cut.add(end);
       else this.cut.delete(end);
       this.isMoved = true;
+    } else if (event.fault) {
+      tile.turned = event.fault.turned;
+      tile.skew = event.fault.skew;
+      this.isMoved = true; // cables show it
+    } else if (event.chip) {
+      tile.chip = event.chip;
     } else if (event.display) {
       const { segments, rgb, leds } = event.display;
       Object.assign(tile, { segments, rgb, leds });
@@ -264,12 +270,12 @@ export class Tiles {
   }
 
   /**
-   * How the cable at a side of a tile is: real tiles do not tell that it is cut, but that they hear nobody.
+   * How the cable at a side of a tile is; at a turned tile it is of no use. Real tiles do not tell that it is cut, but that they hear nobody.
    * @param {Tile} tile @param {number} side
    * @returns {"whole" | "failing" | "cut"}
    */
   cableAt(tile, side) {
-    if (this.isCut(tile, side)) return "cut";
+    if (this.isCut(tile, side) || tile.turned || this.neighbour(tile, side)?.turned) return "cut";
     const marks = [tile.health[SIDES[side]], this.neighbour(tile, side)?.health[SIDES[(side + 2) % 4]]].map((one) => one?.[0]);
     if (marks.includes("dead") || marks.includes("foreign")) return "cut";
     return marks.includes("failing") ? "failing" : "whole";

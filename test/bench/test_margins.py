@@ -1,8 +1,11 @@
 """Link margins: what two resonators may be apart costs no frame, more does, and the page has every row."""
 
+from pathlib import Path
+
 import pytest
 
 from bench.margins import BEGIN, DIFFERENCES, END, PARTS, Case, Count, Distortion, margin, run
+from bench.publish import stands
 from tilenca.base.paths import ROOT
 
 SECONDS = 2.0
@@ -34,3 +37,13 @@ def test_the_page_has_a_row_for_each_case() -> None:
     rows = [line for line in section.splitlines() if line.startswith("| ") and " of " in line]
     assert len(rows) == 2 * len(DIFFERENCES) + 3 * len(PARTS)
     assert "With all sides busy nothing was lost up to" in section
+
+
+def test_a_page_that_has_other_numbers_does_not_stand(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("before\n\n<a>\n\n| 1 |\n\n</a>\n\nafter\n")
+    assert stands("| 1 |", page, "<a>", "</a>")
+    assert not stands("| 2 |", page, "<a>", "</a>")
+    assert "differs" in capsys.readouterr().out

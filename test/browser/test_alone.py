@@ -133,7 +133,7 @@ def test_no_damaged_recording_breaks_the_page(visit: Visit, server: PageServer, 
           for (const text of texts) {
             let events;
             try {
-              events = parseRecording(text);
+              ({ events } = parseRecording(text));
             } catch (error) {
               told.refused.push(error.message);
               continue;
@@ -180,7 +180,7 @@ def test_a_recording_is_no_way_to_change_what_the_page_knows(visit: Visit, serve
           });
           const display = { segments: 1, rgb: [0, 0, 0], leds: "----", port: "other", link: null };
           const models = [{ name: "x", id: "1", labels: ["1"] }];
-          const events = parseRecording(text({ of: "emulated", period_ms: 20, models },
+          const { events } = parseRecording(text({ of: "emulated", period_ms: 20, models },
             { time: 1, port: "tile-01", display }));
           const tiles = new Tiles();
           tiles.take(events);

@@ -1,12 +1,15 @@
 """What one can take along: a picture, a recording that the page replays, a link."""
 
+import io
 import json
+import random
 import re
 import struct
 from pathlib import Path
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from PIL import Image, ImageSequence
 
 from support.browser import Visit
 from support.page_server import PageServer
@@ -70,6 +73,74 @@ def test_a_recording_is_replayed_forwards_and_backwards(shared: Visit, tmp_path:
     page.get_by_role("button", name="Go on").click()
     shared.wait_for_verdict("All 15 tiles show 9")
     page.wait_for_selector("[data-port=tile-11]", state="detached")
+
+
+def test_a_recording_that_was_cut_off_is_replayed_as_far_as_it_is_whole(
+    shared: Visit, tmp_path: Path
+) -> None:
+    path = saved(shared, "Record", tmp_path)
+    lines = path.read_text().splitlines()
+    broken = tmp_path / "broken.jsonl"
+    broken.write_text("\n".join([*lines[:-2], lines[-2][:-9]]))
+    shared.page.set_input_files("#share-file", broken)
+    shared.page.locator("#notice", has_text="Its last line was cut off; it ends before that").wait_for()
+    shared.wait_for_verdict("All 15 tiles show 9")
+    broken.write_text("\n".join([*lines[:9], lines[9][:-9], *lines[10:]]))  # not its last one
+    shared.page.get_by_role("button", name="Share").click()
+    shared.page.set_input_files("#share-file", broken)
+    shared.page.locator("#notice", has_text="line 10 is no event").wait_for()
+
+
+def test_a_gif_shows_the_last_seconds(shared: Visit, tmp_path: Path) -> None:
+    """From the agreement on 8 to that on 9, in the colours of the page, with its last frame for a while."""
+    path = saved(shared, "GIF", tmp_path)
+    film = Image.open(path)
+    assert film.format == "GIF"
+    assert film.size == (round((4 * 120 + 96) * 64 / 120), round((5 * 120 + 96 + 44) * 64 / 120))
+    assert film.info["loop"] == 0
+    durations, places = [], []
+    middle = (film.size[0] // 2 - 3 * 32, 48 * 64 // 120 + 3 * 64 + 32)  # of the place that becomes empty
+    for frame in ImageSequence.Iterator(film):
+        durations.append(frame.info["duration"])
+        places.append(sum(frame.convert("RGB").crop((*middle, middle[0] + 1, middle[1] + 1)).tobytes()))
+    end = float(shared.page.inner_text("#clock").removesuffix(" s"))
+    assert sum(durations) == pytest.approx(1000 * min(end / 0.3, 5) + 1500, abs=150)
+    assert durations[-1] >= 1500
+    assert len(durations) > 20
+    assert places[0] < 600 < 740 < places[-1]  # a dark tile, and the white board
+    corner = film.convert("RGB").getpixel((2, 2))
+    assert corner == (255, 255, 255)
+    assert path.stat().st_size < 1_000_000
+
+
+def test_what_the_gif_encoder_writes_is_what_a_decoder_reads(visit: Visit, server: PageServer) -> None:
+    """Noise of all colours fills the table of codes again and again; runs and single pixels are the rest."""
+    chance = random.Random(5)
+    palette = [[chance.randrange(256) for _ in range(3)] for _ in range(255)]
+    width, height = 97, 83
+    noise = [chance.randrange(255) for _ in range(width * height)]
+    half = [*noise[: width * height // 2], *[7] * (width * height - width * height // 2)]
+    dot = [*half]
+    dot[5 * width + 9] = 200
+    frames = [[3] * (width * height), noise, half, half, dot]
+    visit.page.goto(server.url)
+    data = visit.page.evaluate(
+        """async ([width, height, palette, frames]) => {
+          const { Gif } = await import("./components/gif.js");
+          const gif = new Gif(width, height, palette);
+          frames.forEach((frame, index) => gif.add(Uint8Array.from(frame), 10 * (index + 1)));
+          return [...new Uint8Array(await gif.blob().arrayBuffer())];
+        }""",
+        [width, height, palette, frames],
+    )
+    film = Image.open(io.BytesIO(bytes(data)))
+    read = [
+        (frame.info["duration"], list(frame.convert("RGB").getdata()))
+        for frame in ImageSequence.Iterator(film)
+    ]
+    assert [duration for duration, _ in read] == [100, 200, 700, 500]  # two that are alike are one
+    for (_, pixels), wanted in zip(read, [frames[0], noise, half, dot], strict=True):
+        assert pixels == [tuple(palette[one]) for one in wanted]
 
 
 def test_a_future_that_was_left_is_not_in_the_recording(shared: Visit, tmp_path: Path) -> None:

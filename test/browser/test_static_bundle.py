@@ -2,37 +2,21 @@
 
 import gzip
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser
 
+from browser.conftest import WEB
 from release.page_bundle import lay_out
+from support.alone import alone
 from support.browser import Visit, new_visit
 from support.page_server import PageServer
 from support.static_server import static_server
-from tilenca.base import paths
 
-WEB = paths.BUILD / "web" / "bundle"
 MOST_GZIPPED = 1_000_000
 START = "?shape=digits/5&seed=42&speed=0&spread=0.2&until=0.8&fault=loss=0.02&fault=cut@2E&fault=off@8"
-
-
-@pytest.fixture(scope="module")
-def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if not (WEB / "tilenca_emulator.wasm").exists():
-        pytest.skip(f"{WEB} is not built; run `make web`")
-    folder = tmp_path_factory.mktemp("bundle") / "page"
-    lay_out(WEB, folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def site(bundle: Path, browser: Browser) -> Iterator[str]:
-    with static_server(bundle) as url:
-        yield url
 
 
 def test_it_runs_by_itself_and_a_hand_reaches_in(visit: Visit, site: str) -> None:
@@ -111,6 +95,29 @@ def test_missing_files_are_said(browser: Browser, bundle: Path, tmp_path: Path) 
     with static_server(broken) as url, new_visit(browser) as visit:
         visit.page.goto(url)
         visit.page.locator("#notice", has_text="firmware.elf: 404").wait_for()
+
+
+def test_another_model_is_fetched_by_whoever_chooses_it(
+    visit: Visit, browser: Browser, bundle: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "page"
+    with alone("platformio"):
+        lay_out(WEB, folder, ["pentominoes"])
+    beside = {str(path.relative_to(folder)) for path in folder.rglob("pentominoes.*")}
+    assert beside == {"emulator/models/pentominoes.elf", "emulator/models/pentominoes.json"}
+    page = visit.page
+    with static_server(folder) as url:
+        page.goto(f"{url}?speed=0.5&spread=0.1")
+        visit.wait_for_verdict("All 16 tiles show 8")
+        assert not any("pentominoes" in address for address in visit.requests)
+        page.get_by_label("Model").select_option("pentominoes")
+        visit.wait_for_verdict("All 5 tiles show F")
+        assert "model=64EB" in page.url
+        page.goto(f"{url}?model=64EB&shape=pentominoes/X&speed=0.5&spread=0.1")
+        visit.wait_for_verdict("All 5 tiles show X")
+        assert page.input_value("#model") == "pentominoes"
+        page.get_by_label("Model").select_option("digits")
+        visit.wait_for_verdict("All 16 tiles show 8")
 
 
 def test_it_is_small(bundle: Path) -> None:

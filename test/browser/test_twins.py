@@ -8,8 +8,10 @@ from playwright.sync_api import Page
 from support.browser import Visit
 from support.page_server import PageServer
 from support.vectors import cases
+from tilenca.protocol.constants import SETTING_RANGES
 from tilenca.protocol.frames import cobs_decode, decode_payload
 from tilenca.protocol.sentences import parse_sentence, type_of
+from tilenca.protocol.stream_hands import MAX_SKEW_PPM
 from tilenca.shapes.glyphs import looks_of, screen_colour
 
 
@@ -85,6 +87,16 @@ def test_lights_have_the_colours_that_terminals_and_films_give_them(page: Page) 
         red, green, blue = duty
         expected = screen_colour((red, green, blue))
         assert found == pytest.approx([255 * part for part in expected], abs=0.51), duty
+
+
+def test_fields_take_what_commands_take(page: Page) -> None:
+    fields = page.evaluate('async () => (await import("/components/settings.js")).FIELDS')
+    assert {field["name"]: (field["low"], field["high"]) for field in fields} == {
+        name: tuple(SETTING_RANGES[name]) for name in ("period", "brightness")
+    }
+    page.locator("[data-port=tile-01]").click()
+    field = page.get_by_label("Clock too fast")
+    assert (field.get_attribute("min"), field.get_attribute("max")) == (f"{-MAX_SKEW_PPM}", f"{MAX_SKEW_PPM}")
 
 
 def test_an_address_keeps_what_it_says_and_survives_nonsense(page: Page) -> None:

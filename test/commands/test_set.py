@@ -83,6 +83,10 @@ def test_a_tile_that_is_not_there_is_no_device(capsys: pytest.CaptureFixture[str
         (("period", "1.5"), "period '1.5'"),
         (("colour", "3"), "no setting 'colour'"),
         (("preset", "fast"), "no preset 'fast'"),
+        (("board", "2"), "it is REVISION.SERIAL, such as 2.17"),
+        (("board", "0.17"), "the revision is 1..255"),
+        (("board", "2.65536"), "the serial number 0..65535"),
+        (("brightness", "9", "--replace"), "--replace does nothing without board"),
     ],
 )
 def test_what_no_tile_takes_is_refused_before_a_port_is_opened(
@@ -99,3 +103,26 @@ def test_one_id_is_not_given_to_two_tiles(capsys: pytest.CaptureFixture[str]) ->
     assert set_in(devices, "id", "7") == 2
     assert "2 tiles would have the same id" in capsys.readouterr().err
     assert not any(line.startswith(b"$SET") for device in devices for line in device.heard)
+
+
+def marked(number: int, marking: tuple[str, str]) -> Device:
+    """A tile that has a marking, and gives it up only when told to."""
+
+    def answer(line: bytes, count: int) -> bytes:
+        if line == ask_command():
+            return format_sentence(replace(HELLO, tile=number))
+        if line.startswith(b"$MARK") and b"replace" not in line:
+            return format_sentence(NakSentence(number, "MARKED", "MARK"))
+        return format_sentence(AckSentence(number, "MARK", marking))
+
+    return Device(format_sentence(TileSentence(number, 100, 1, "4", 4, 30, "----", STATE)), answer)
+
+
+def test_a_marking_is_of_one_board_and_for_good(capsys: pytest.CaptureFixture[str]) -> None:
+    devices = [marked(1, ("2", "17")), marked(2, ("2", "17"))]
+    assert set_in(devices, "board", "2.17") == 2
+    assert "2 boards would be the same" in capsys.readouterr().err
+    assert set_in(devices, "board", "2.18", "--tile", "2") == 1
+    assert "it has another marking; --replace replaces it" in capsys.readouterr().out
+    assert set_in(devices, "board", "2.18", "--tile", "2", "--replace") == 0
+    assert not any(line.startswith(b"$MARK") for line in devices[0].heard)

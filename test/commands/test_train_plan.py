@@ -87,6 +87,16 @@ def test_a_training_begins_with_the_weights_of_a_model(tmp_path: Path) -> None:
     assert plan.dimensions == plan.initial.dimensions == Dimensions(24, 96, 96)
 
 
+def test_a_model_without_directions_gets_them_where_the_recipe_trains_them(tmp_path: Path) -> None:
+    plan = make_plan(arguments(tmp_path, "--recipe", "damage", "--weights", "digits-64"))
+    assert plan.initial is not None
+    assert plan.dimensions == plan.initial.dimensions == Dimensions(25, 64, 64, 4)
+    plan.initial.save(tmp_path / "directed")
+    with pytest.raises(UsageError, match="recipe full does not train that"):
+        make_plan(arguments(tmp_path, "--recipe", "full", "--weights", str(tmp_path / "directed")))
+    assert make_plan(arguments(tmp_path, "--recipe", "damage")).dimensions == Dimensions(25, 96, 96, 4)
+
+
 @pytest.mark.parametrize(
     ("more", "wanted"),
     [

@@ -10,7 +10,7 @@ from tilenca.base.errors import UsageError
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator.arrangement import Arrangement
 from tilenca.emulator.experiment import Emulation, EmulationSettings
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.shapes.file import Shape
 
@@ -71,6 +71,42 @@ def test_a_moved_tile_boots_and_keeps_its_number(firmware: Path) -> None:
         board.move(2, (-1, 0))  # where it lies: nothing happens
         emulation.pass_time(0.05)
         assert not any(b"HELLO" in line.raw for line in emulation.listen())
+
+
+def test_tiles_that_are_shifted_keep_their_cables_and_run_on(firmware: Path) -> None:
+    with arranged(firmware, ("###", "...", "###")) as (emulation, board):
+        emulation.pass_time(0.3)
+        emulation.listen()
+        board.connect(1, WEST, whole=False)
+        board.shift([0, 1, 2], 1, 1)
+        assert [board.places[tile] for tile in range(3)] == [(1, 1), (1, 2), (1, 3)]
+        assert board.cut == {(0, EAST, 1, WEST)}
+        assert set(emulation.cables[-2:]) == {(0, SOUTH, 4, NORTH), (1, SOUTH, 5, NORTH)}
+        emulation.pass_time(0.3)
+        assert [links(emulation, tile) for tile in range(6)] == [
+            "--S-",
+            "-ES-",
+            "---W",
+            "-E--",
+            "NE-W",
+            "N--W",
+        ]
+        board.shift([0, 1, 2], 0, 1)
+        assert emulation.cables[-1] == (0, SOUTH, 5, NORTH)
+        emulation.pass_time(0.3)
+        assert [links(emulation, tile) for tile in (1, 4, 5)] == ["-E--", "-E-W", "N--W"]
+        assert not any(line.raw.startswith(b"$HELLO") for line in emulation.listen())
+
+
+def test_a_shift_needs_room(firmware: Path) -> None:
+    with arranged(firmware, ROW_OF_THREE) as (_, board):
+        with pytest.raises(UsageError, match="other tiles lie there; choose empty places"):
+            board.shift([0, 1], 0, 1)
+        with pytest.raises(UsageError, match="the board ends there"):
+            board.shift([0, 1, 2], 0, 63)
+        assert board.places == {0: (0, 0), 1: (0, 1), 2: (0, 2)}
+        board.shift([0, 1, 2], 0, 62)
+        assert board.places[2] == (0, 64)
 
 
 def test_a_place_holds_one_tile(firmware: Path) -> None:

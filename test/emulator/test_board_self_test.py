@@ -1,16 +1,13 @@
 """The self-test of the board test: boards made faulty on purpose, and each fault found by its name."""
 
-import subprocess
-import sys
 import zlib
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from support.alone import alone
+from support.firmware import board_test_image
 from support.line_faults import Plug
-from tilenca.base.paths import ROOT
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator import Array, EmulatedTile
 from tilenca.emulator.serve import STOCK_BOOTLOADER
@@ -22,11 +19,8 @@ STEPS = ("supply", "fuses", "bootloader", "EEPROM", "link LEDs", "pins", "clock"
 
 @pytest.fixture(scope="module")
 def elf() -> Path:
-    """The image of the environment `board_test`, built as users build it."""
-    pio = str(Path(sys.executable).with_name("pio"))
-    with alone("pio"):
-        subprocess.run([pio, "run", "-s", "-d", str(ROOT), "-e", "board_test"], check=True)
-    return ROOT / ".pio" / "build" / "board_test" / "firmware.elf"
+    """The image of the environment `board_test`."""
+    return board_test_image()
 
 
 def results(tile: EmulatedTile) -> dict[str, list[str]]:

@@ -7,10 +7,18 @@ import pytest
 from support.line_faults import AHEAD_S, CLOCK_HZ
 from tilenca.base.sides import SIDES
 from tilenca.emulator import Array, EmulatedTile
-from tilenca.protocol.commands import chip_command
-from tilenca.protocol.constants import LEAST_SUPPLY_MV
-from tilenca.protocol.sentences import BoardSentence, ChipSentence, ErrorSentence, Sentence, parse_sentence
-from tilenca.protocol.settings import settings_block
+from tilenca.protocol.commands import chip_command, mark_command
+from tilenca.protocol.constants import LEAST_SUPPLY_MV, MARKING_AT, SETTINGS_SIZE
+from tilenca.protocol.sentences import (
+    AckSentence,
+    BoardSentence,
+    ChipSentence,
+    ErrorSentence,
+    NakSentence,
+    Sentence,
+    parse_sentence,
+)
+from tilenca.protocol.settings import marking_block, settings_block
 
 
 def said(tile: EmulatedTile) -> list[Sentence | None]:
@@ -64,3 +72,52 @@ def test_the_fuses_are_told_on_request(firmware: Path) -> None:
         tile.write_serial(chip_command())
         array.run(0.1)
         assert ChipSentence(7, 0xFF, 0xD9, 0xFC, 0xCF) in said(tile)
+
+
+def chip_of(array: Array) -> ChipSentence:
+    array[0].reset()
+    array.run(0.3)
+    return next(one for one in said(array[0]) if isinstance(one, ChipSentence))
+
+
+def test_a_marking_outlives_resets_and_is_replaced_only_when_told(firmware: Path) -> None:
+    with Array(firmware) as array:
+        tile = array[0]
+        tile.write_eeprom(0, settings_block(7, 100, 0) * 2)
+        assert chip_of(array).marking is None
+        tile.write_serial(mark_command(2, 1017))
+        array.run(0.2)
+        assert AckSentence(7, "MARK", ("2", "1017")) in said(tile)
+        assert chip_of(array).marking == "2.1017"
+        tile.write_serial(mark_command(2, 1018))
+        array.run(0.2)
+        assert NakSentence(7, "MARKED", "MARK") in said(tile)
+        assert chip_of(array).marking == "2.1017"
+        tile.write_serial(mark_command(2, 1018, replace=True))
+        array.run(0.2)
+        assert chip_of(array).marking == "2.1018"
+        assert tile.read_eeprom(0, 2 * SETTINGS_SIZE) == settings_block(7, 100, 0) * 2
+
+
+def test_power_may_fail_while_a_marking_is_written(firmware: Path) -> None:
+    """A cut at any time leaves the old marking or the new one, and the settings as they are."""
+    found: list[str] = []
+    with Array(firmware) as array:
+        tile = array[0]
+        for cut_s in (0.001, 0.004, 0.012, 0.02, 0.03, 0.05, 0.2):
+            tile.write_eeprom(0, settings_block(7, 100, 0) * 2 + marking_block(2, 1017) * 2)
+            chip_of(array)
+            tile.write_serial(mark_command(3, 4321, replace=True))
+            array.run(0.002 + cut_s)
+            tile.powered = False
+            array.run(0.05)
+            tile.powered = True
+            array.run(0.3)
+            chip = next(one for one in said(tile) if isinstance(one, ChipSentence))
+            found.append(str(chip.marking))
+            assert chip.tile == 7
+            assert tile.read_eeprom(MARKING_AT, SETTINGS_SIZE) == (
+                marking_block(3, 4321) if chip.marking == "3.4321" else marking_block(2, 1017)
+            )
+    assert found == sorted(found), "once new, always new"
+    assert set(found) == {"2.1017", "3.4321"}

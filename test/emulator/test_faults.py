@@ -6,9 +6,7 @@ from typing import Any
 import pytest
 
 from support.emulate import emulate, report
-from tilenca.base.errors import UsageError
 from tilenca.base.paths import FIRMWARE_ELF
-from tilenca.emulator.faults import parse
 
 
 @pytest.fixture(autouse=True)
@@ -64,20 +62,24 @@ def test_a_tile_that_is_switched_on_again_counts_from_there(capsys: pytest.Captu
     assert again["simulated_s"] == pytest.approx(3.65, abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("text", "fact"),
-    [
-        ("supply=1@2", "supply is 1.8 to 5.5 V"),
-        ("supply=6@2", "supply is 0 to 5.5"),
-        ("supply@2", "takes a number"),
-    ],
-)
-def test_a_supply_that_no_chip_runs_at_is_refused(text: str, fact: str) -> None:
-    with pytest.raises(UsageError, match=fact):
-        parse(text)
+def test_a_turned_tile_hears_nobody_until_it_lies_straight_again(capsys: pytest.CaptureFixture[str]) -> None:
+    before = received(report(capsys, *SECONDS))
+    after = received(report(capsys, *SECONDS, "--fault", "turn@3:1-2", "--fault", "cut@3-4:0.5-1.5"))
+    assert before[0] == after[0]
+    assert before[1] - after[1] in range(8, 13)  # of its two neighbours, one
+    assert before[2] - after[2] in range(22, 29)  # of both, and a while before of one
+    assert before[3] - after[3] in range(13, 18)
 
 
-@pytest.mark.parametrize("fault", ["loss=0.02", "delay=3", "drift=50", "adc=2"])
+def test_a_clock_that_is_far_off_understands_nobody(capsys: pytest.CaptureFixture[str]) -> None:
+    well = report(capsys, *SECONDS, "--fault", "skew=5000@3")
+    assert sum(tile["frames"]["corrupt"] for tile in well["tiles"]) == 0
+    off = report(capsys, *SECONDS, "--fault", "skew=-90000@3")
+    assert received(off)[1] in range(received(well)[1] // 2 - 3, received(well)[1] // 2 + 4)
+    assert received(off)[0] == received(well)[0]
+
+
+@pytest.mark.parametrize("fault", ["loss=0.02", "delay=3", "drift=50", "skew=2000", "adc=2"])
 def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, fault: str
 ) -> None:

@@ -201,6 +201,22 @@ def test_drift_does_not_depend_on_how_time_is_sliced(avr: Compile) -> None:
     assert everything(arrays[0]) == everything(arrays[1])
 
 
+def test_a_skewed_clock_is_faster_by_so_much_until_it_is_not(avr: Compile) -> None:
+    array = Array(avr("int main(void) { for (;;) { } }"), 2, ppm=[0, 300])
+    array.run(0.5)
+    array[1].set_skew(20_000.0)
+    array.run(0.5)
+    skewed = array.save()
+    array[1].set_skew(0.0)
+    array.run(0.5)
+    ahead = array[1].cycles[0] - array[0].cycles[0]
+    assert ahead == pytest.approx(16e6 * (1.5 * 300e-6 + 0.5 * 20_000e-6), abs=20)
+    array.restore(skewed)  # a snapshot knows it
+    array.run(0.5)
+    ahead = array[1].cycles[0] - array[0].cycles[0]
+    assert ahead == pytest.approx(16e6 * (1.5 * 300e-6 + 20_000e-6), abs=20)
+
+
 # --- threads ---
 
 

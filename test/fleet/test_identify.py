@@ -14,6 +14,8 @@ from tilenca.protocol.commands import ask_command, chip_command
 from tilenca.protocol.sentences import (
     BoardSentence,
     ChipSentence,
+    LinkSentence,
+    Sentence,
     TileSentence,
     format_sentence,
     framed,
@@ -66,17 +68,22 @@ def test_a_tile_that_speaks_is_asked_and_one_that_greets_is_not(stack: ExitStack
 
 
 def test_what_a_tile_measures_is_awaited_where_it_is_wanted(stack: ExitStack) -> None:
-    board = BoardSentence(7, 500, 4380, (0,) * 4, (0,) * 4)
+    first = BoardSentence(7, 500, 4380, (0,) * 4, (0,) * 4)
+    board = BoardSentence(7, 1500, 4380, (0, 9, 0, 0), (0,) * 4)
+    links = [LinkSentence(7, at, "E", 0, at, 0, at, 0, 20, 0, 1, "W") for at in (100, 500)]
     chip = ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF)
+    said: list[Sentence] = [chip, *links, first, board]
 
     def answer(line: bytes, count: int) -> bytes:
         assert line == chip_command()
-        return format_sentence(chip) + format_sentence(board)
+        return b"".join(format_sentence(one) for one in said)
 
     new = stack.enter_context(Device(format_sentence(HELLO), answer))
     old = stack.enter_context(Device(format_sentence(HELLO)))
     answers = ask_all([new.port, old.port], "a test", board_s=1.0)
     assert [answers[port].board for port in (new.port, old.port)] == [board, None]
+    assert answers[new.port].board_before == first
+    assert {side: health.good for side, health in answers[new.port].health.items()} == {"E": 0.5}
     assert [answers[port].chip for port in (new.port, old.port)] == [chip, None]
     assert answers[old.port].hello == HELLO, "an older firmware says no such thing"
 

@@ -16,6 +16,7 @@ from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.emulated import EmulatedSource
 from tilenca.page.offer import Drawing
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.sentences import TileSentence, parse_sentence
 from tilenca.protocol.stream import KINDS, StreamEvent
 from tilenca.shapes.file import load_task
@@ -106,12 +107,12 @@ def test_the_same_start_says_the_same_bytes_as_the_command(
 def test_a_pulled_tile_goes_and_the_others_go_on(source: EmulatedSource) -> None:
     source.take(commands.Open(FOUR, spread_s=0.0))
     play(source, 1.0)
-    source.take(commands.Pull("tile-02"))
+    source.take(hands.Pull("tile-02"))
     events = play(source, 0.5)
     assert of(events, "place") == [{"time": of(events, "place")[0]["time"], "port": "tile-02", "place": None}]
     assert "tile-02" not in labels(events)
     assert len(labels(events)) == 9
-    source.take(commands.Put(0, 3))
+    source.take(hands.Put(0, 3))
     events = play(source, 1.0)
     assert of(events, "place")[0]["place"] == [0, 3]
     assert labels(events)["tile-02"] == "4"
@@ -120,8 +121,8 @@ def test_a_pulled_tile_goes_and_the_others_go_on(source: EmulatedSource) -> None
 def test_power_and_cables_are_told_once(source: EmulatedSource) -> None:
     source.take(commands.Open(FOUR, spread_s=0.0))
     play(source, 0.3)
-    source.take(commands.Power("tile-05", on=False))
-    source.take(commands.Cut("tile-03", "N"))
+    source.take(hands.Power("tile-05", on=False))
+    source.take(hands.Cut("tile-03", "N"))
     events = play(source, 0.3)
     assert [(one["port"], one["open"], one["reason"]) for one in of(events, "open")] == [
         ("tile-05", False, "no power")
@@ -129,8 +130,8 @@ def test_power_and_cables_are_told_once(source: EmulatedSource) -> None:
     assert [(one["port"], one["side"], one["cable"]) for one in of(events, "cable")] == [
         ("tile-01", "S", "cut")
     ]
-    source.take(commands.Power("tile-05", on=True))
-    source.take(commands.Cut("tile-01", "S", on=False))
+    source.take(hands.Power("tile-05", on=True))
+    source.take(hands.Cut("tile-01", "S", on=False))
     events = play(source, 0.3)
     assert [(one["port"], one["open"]) for one in of(events, "open")] == [("tile-05", True)]
     assert [one["cable"] for one in of(events, "cable")] == ["whole"]
@@ -162,37 +163,37 @@ def test_while_nobody_looks_time_stands_still(source: EmulatedSource) -> None:
 
 def test_what_cannot_be_is_one_line(source: EmulatedSource) -> None:
     with pytest.raises(UsageError, match="nothing runs yet"):
-        source.take(commands.Pull("tile-01"))
+        source.take(hands.Pull("tile-01"))
     with pytest.raises(UsageError, match="begins with none of"):
         source.take(commands.Open(FOUR, faults=("explode",)))
     with pytest.raises(UsageError, match="no tile '99'"):
         source.take(commands.Open(FOUR, faults=("off@99",)))
     source.take(commands.Open(FOUR))
     with pytest.raises(UsageError, match="no tile tile-99 lies on the board"):
-        source.take(commands.Pull("tile-99"))
+        source.take(hands.Pull("tile-99"))
     with pytest.raises(UsageError, match="has no neighbour"):
-        source.take(commands.Cut("tile-01", "W"))
+        source.take(hands.Cut("tile-01", "W"))
 
 
 def test_the_board_has_room_for_so_many(source: EmulatedSource) -> None:
     cells = tuple((row, col) for row in range(12) for col in range(12))
     source.take(commands.Open(cells, paused=True))
     with pytest.raises(UsageError, match="144 tiles, which is all"):
-        source.take(commands.Put(12, 0))
+        source.take(hands.Put(12, 0))
 
 
 places = st.tuples(st.integers(-1, 3), st.integers(-1, 3))
 ports = st.integers(1, 6).map(lambda number: f"tile-{number:02d}")
 deeds = st.one_of(
-    st.builds(commands.Put, st.integers(-1, 3), st.integers(-1, 3)),
-    st.builds(commands.Pull, ports),
-    st.builds(commands.Move, ports, st.integers(-1, 3), st.integers(-1, 3)),
-    st.builds(commands.Cut, ports, st.sampled_from("NESW"), st.booleans()),
-    st.builds(commands.Power, ports, st.booleans()),
-    st.builds(commands.Freeze, ports, st.booleans()),
-    st.builds(commands.Reset, ports),
-    st.builds(commands.Noise, st.floats(0, 1)),
-    st.builds(commands.Arrange, st.lists(places, min_size=1, max_size=5, unique=True).map(tuple)),
+    st.builds(hands.Put, st.integers(-1, 3), st.integers(-1, 3)),
+    st.builds(hands.Pull, ports),
+    st.builds(hands.Move, ports, st.integers(-1, 3), st.integers(-1, 3)),
+    st.builds(hands.Cut, ports, st.sampled_from("NESW"), st.booleans()),
+    st.builds(hands.Power, ports, st.booleans()),
+    st.builds(hands.Freeze, ports, st.booleans()),
+    st.builds(hands.Reset, ports),
+    st.builds(hands.Noise, st.floats(0, 1)),
+    st.builds(hands.Arrange, st.lists(places, min_size=1, max_size=5, unique=True).map(tuple)),
 )
 
 
@@ -237,8 +238,8 @@ def said(source: EmulatedSource, steps: int) -> list[StreamEvent]:
 def test_time_goes_back_and_the_same_future_comes(source: EmulatedSource) -> None:
     source.take(commands.Open(FOUR, spread_s=0.1, paused=True, faults=("loss=0.1", "cut@1-3:0.2-0.5")))
     first = said(source, 5)
-    source.take(commands.Pull("tile-04"))
-    source.take(commands.Put(9, 9))
+    source.take(hands.Pull("tile-04"))
+    source.take(hands.Put(9, 9))
     then = source.advance(0.0) + said(source, 8)
     source.take(commands.Seek(0.1))
     jump, *state = source.advance(0.0)
@@ -256,10 +257,10 @@ def test_time_goes_back_and_the_same_future_comes(source: EmulatedSource) -> Non
 def test_another_deed_in_the_past_begins_another_future(source: EmulatedSource) -> None:
     source.take(commands.Open(FOUR, spread_s=0.1, paused=True))
     said(source, 6)
-    source.take(commands.Pull("tile-04"))
+    source.take(hands.Pull("tile-04"))
     said(source, 2)
     source.take(commands.Seek(0.2))
-    source.take(commands.Pull("tile-10"))
+    source.take(hands.Pull("tile-10"))
     assert of(source.advance(0.0), "pace")[-1]["pace"]["end"] == pytest.approx(0.2, abs=2e-5)
     assert {event["port"] for event in said(source, 6) if "place" in event} == set()
     source.take(commands.Seek(99.0))
@@ -278,23 +279,23 @@ def test_a_run_with_deeds_is_the_run_that_hands_made(source: EmulatedSource) -> 
     start = commands.Open(FOUR, spread_s=0.1, paused=True, seed=5)
     source.take(start)
     first = said(source, 4)
-    hands: tuple[commands.Hand, ...] = (
-        commands.Pull("tile-04"),
-        commands.Freeze("tile-02"),
-        commands.Noise(0.1),
+    done: tuple[hands.Hand, ...] = (
+        hands.Pull("tile-04"),
+        hands.Freeze("tile-02"),
+        hands.Noise(0.1),
     )
-    for hand in hands:
+    for hand in done:
         source.take(hand)
         first += said(source, 3)
     source.take(commands.Seek(0.0))
-    deeds = tuple((time_s, hand) for time_s, hand in zip((0.2, 0.35, 0.5), hands, strict=True))
+    deeds = tuple((time_s, hand) for time_s, hand in zip((0.2, 0.35, 0.5), done, strict=True))
     source.take(commands.Open(FOUR, spread_s=0.1, paused=True, seed=5, deeds=deeds))
     told = of(source.advance(0.0), "deed")
     assert [event["deed"]["do"] for event in told] == ["pull", "freeze", "noise"]
     again = said(source, 13)
     assert of(again, "raw") == of(first, "raw")
     source.take(commands.Seek(0.3))
-    source.take(commands.Reset("tile-01"))
+    source.take(hands.Reset("tile-01"))
     assert [event["deed"] for event in of(source.advance(0.0), "deed")] == [
         {"do": "reset", "port": "tile-01"}
     ]
@@ -305,7 +306,7 @@ def test_a_run_with_deeds_is_the_run_that_hands_made(source: EmulatedSource) -> 
 
 def test_deeds_at_the_beginning_come_before_all(source: EmulatedSource) -> None:
     cells = [list(cell) for cell in FOUR[:2]]
-    deeds = ((0.0, commands.Arrange(FOUR[:2])), (0.0, commands.Pull("tile-01")))
+    deeds = ((0.0, hands.Arrange(FOUR[:2])), (0.0, hands.Pull("tile-01")))
     source.take(commands.Open(FOUR, paused=True, deeds=deeds))
     events = source.advance(0.0)
     assert of(events, "deed")[0]["deed"] == {"do": "arrange", "cells": cells}
@@ -313,8 +314,8 @@ def test_deeds_at_the_beginning_come_before_all(source: EmulatedSource) -> None:
 
 
 def test_a_planned_deed_that_cannot_be_done_is_told_once_and_stops_nothing(source: EmulatedSource) -> None:
-    deeds = tuple((0.0, commands.Pull(port)) for port in ("tile-99", "tile-01"))
-    source.take(commands.Open(FOUR, paused=True, deeds=(*deeds, (0.1, commands.Pull("tile-98")))))
+    deeds = tuple((0.0, hands.Pull(port)) for port in ("tile-99", "tile-01"))
+    source.take(commands.Open(FOUR, paused=True, deeds=(*deeds, (0.1, hands.Pull("tile-98")))))
     events = source.advance(0.0)
     assert [event["refused"] for event in of(events, "refused")] == ["no tile tile-99 lies on the board"]
     source.take(commands.Step(0.2))

@@ -10,6 +10,7 @@ from tilenca.base.paths import DEFAULT_SHAPES
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.emulated import EmulatedSource
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.stream import StreamEvent
 from tilenca.shapes.file import load_task
 
@@ -41,17 +42,17 @@ def answers(events: list[StreamEvent]) -> dict[str, str]:
 
 
 def test_a_setting_is_kept_by_all_or_by_one(source: EmulatedSource) -> None:
-    source.take(commands.Set("brightness", 9))
+    source.take(hands.Set("brightness", 9))
     assert answers(run(source, 0.2)) == {"tile-01": "SET,brightness,9", "tile-02": "SET,brightness,9"}
-    source.take(commands.Set("period", 50, "tile-02"))
+    source.take(hands.Set("period", 50, "tile-02"))
     assert answers(run(source, 0.2)) == {"tile-02": "SET,period,50"}
     with pytest.raises(UsageError, match="no tile tile-99"):
-        source.take(commands.Set("period", 50, "tile-99"))
+        source.take(hands.Set("period", 50, "tile-99"))
 
 
 def test_a_tile_blinks_and_another_begins_again(source: EmulatedSource) -> None:
-    source.take(commands.Blink("tile-01", 1))
-    source.take(commands.Restart("tile-02"))
+    source.take(hands.Blink("tile-01", 1))
+    source.take(hands.Restart("tile-02"))
     events = run(source, 0.3)
     assert answers(events) == {"tile-01": "BLINK,1", "tile-02": "RESTART"}
     shown = [

@@ -7,7 +7,8 @@ import pytest
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.page.session import MOST_COMMANDS, STEP_SLICE_S, EndedError, Session
 from tilenca.protocol.stream import StreamEvent, place_event, stream_event
-from tilenca.protocol.stream_commands import Blink, Pull, Put, Reset, Step, StreamCommand
+from tilenca.protocol.stream_commands import Step, StreamCommand
+from tilenca.protocol.stream_hands import Blink, Pull, Put, Reset
 
 LIMIT_S = 20
 

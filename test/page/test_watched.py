@@ -15,6 +15,7 @@ from tilenca.fleet.recording import Recorder, read_recording
 from tilenca.page.session import EndedError
 from tilenca.page.watched import TAKES, Watch, WatchedSource
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.constants import PROTOCOL_VERSION
 from tilenca.protocol.sentences import HelloSentence, format_sentence, framed
 from tilenca.protocol.stream import StreamEvent
@@ -114,11 +115,11 @@ def test_a_port_that_is_pulled_is_told_and_the_other_goes_on(page: Page, tiles: 
     tiles[0].say()
     page.wait_for(raw_of(tiles[0].port, "TILE"))
     with pytest.raises(UsageError, match="cannot be reached now"):
-        page.source.take(commands.Blink(tiles[1].port))
+        page.source.take(hands.Blink(tiles[1].port))
     tiles[0].unplug()
     page.wait_for(open_of(tiles[0].port, False))
     with pytest.raises(UsageError, match="no tile can be reached"):
-        page.source.take(commands.Set("period", 20))
+        page.source.take(hands.Set("period", 20))
 
 
 def test_a_tile_that_speaks_is_asked_what_it_runs(page: Page, tiles: list[Tile]) -> None:
@@ -134,16 +135,16 @@ def test_a_command_reaches_its_tile_and_what_it_refuses_is_told(page: Page, tile
         tile.say()
         assert tile.read_line() == framed("ASK").strip()
     page.wait_for(raw_of(tiles[1].port, "TILE"))
-    page.source.take(commands.Set("period", 50, None))
+    page.source.take(hands.Set("period", 50, None))
     for tile in tiles:
         assert tile.read_line() == framed("SET,period,50").strip()
         tile.write(framed(f"ACK,{tile.tile},SET,period,50"))
     for tile in tiles:
         assert tile.read_line() == framed("ASK").strip(), "so that the page knows what is in force"
     for command, line in (
-        (commands.Blink(tiles[0].port, 3), "BLINK,3"),
-        (commands.Restart(tiles[0].port), "RESTART"),
-        (commands.Freeze(tiles[0].port, True), "SET,updates,1"),
+        (hands.Blink(tiles[0].port, 3), "BLINK,3"),
+        (hands.Restart(tiles[0].port), "RESTART"),
+        (hands.Freeze(tiles[0].port, True), "SET,updates,1"),
     ):
         page.source.take(command)
         assert tiles[0].read_line() == framed(line).strip()
@@ -154,7 +155,7 @@ def test_a_command_reaches_its_tile_and_what_it_refuses_is_told(page: Page, tile
 
 
 def test_what_only_a_hand_can_do_is_refused(page: Page) -> None:
-    for command in (commands.Pull("x"), commands.Noise(0.1), commands.Open(((0, 0),)), commands.Seek(1)):
+    for command in (hands.Pull("x"), hands.Noise(0.1), commands.Open(((0, 0),)), commands.Seek(1)):
         with pytest.raises(UsageError, match="real tiles"):
             page.source.take(command)
 
@@ -171,7 +172,7 @@ def test_a_watch_that_breaks_off_says_so(
         page.wait_for(lambda event: False)
     assert "Traceback" in capsys.readouterr().err
     with pytest.raises(EndedError, match=why):
-        page.source.take(commands.Set("period", 50))
+        page.source.take(hands.Set("period", 50))
     late = WatchedSource(watch)
     with pytest.raises(EndedError, match=why):
         late.begin()
@@ -182,10 +183,10 @@ def test_a_tile_that_does_not_answer_holds_up_no_other_and_no_news(page: Page, t
     mute, well = tiles
     for tile in tiles:
         page.wait_for(open_of(tile.port, True))
-    page.source.take(commands.Blink(mute.port, 3))
+    page.source.take(hands.Blink(mute.port, 3))
     assert mute.read_line() == framed("BLINK,3").strip()
-    page.source.take(commands.Blink(mute.port, 4))
-    page.source.take(commands.Blink(well.port, 5))
+    page.source.take(hands.Blink(mute.port, 4))
+    page.source.take(hands.Blink(well.port, 5))
     assert well.read_line() == framed("BLINK,5").strip()
     well.write(framed("ACK,2,BLINK,5"))
     paces = 0
@@ -203,7 +204,7 @@ def test_it_ends_though_a_tile_does_not_answer(tiles: list[Tile], monkeypatch: p
         with watch:
             page = Page(watch)
             page.wait_for(open_of(tiles[0].port, True))
-            page.source.take(commands.Blink(tiles[0].port, 3))
+            page.source.take(hands.Blink(tiles[0].port, 3))
             tiles[0].read_line()
             leaving_s = time.monotonic()
         assert time.monotonic() - leaving_s < LIMIT_S
@@ -214,7 +215,7 @@ def test_thaw_brings_back_what_was_set_before_freeze(page: Page, tiles: list[Til
     tiles[0].write(format_sentence(HelloSentence(PROTOCOL_VERSION, 1, 0x1234, 21, 11, 20, 500, 1, 0, 255)))
     page.wait_for(raw_of(tiles[0].port, "HELLO"))
     for on, value in ((True, 1), (False, 500), (False, 0)):
-        page.source.take(commands.Freeze(tiles[0].port, on))
+        page.source.take(hands.Freeze(tiles[0].port, on))
         assert tiles[0].read_line() == framed(f"SET,updates,{value}").strip()
         tiles[0].write(framed(f"ACK,1,SET,updates,{value}"))
         assert tiles[0].read_line() == framed("ASK").strip()

@@ -23,7 +23,7 @@ def test_commands_are_those_of_the_shared_table() -> None:
 
 @pytest.mark.parametrize(
     ("name", "low", "high"),
-    [("id", 0, 255), ("period", 10, 10000), ("updates", 0, 65535), ("brightness", 0, 255), ("leds", 0, 1)],
+    [("id", 0, 255), ("period", 10, 10000), ("updates", 0, 65535), ("brightness", 0, 255), ("leds", 0, 2)],
 )
 def test_settings_have_the_ranges_of_the_protocol(name: str, low: int, high: int) -> None:
     assert set_command(name, low).startswith(b"$SET,%s,%d*" % (name.encode(), low))

@@ -43,6 +43,7 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
     ),
     st.builds(TimeSentence, u8, u32, u32, u16, u32, u16, u32),
     st.builds(ChipSentence, u8, u8, u8, u8, u8),
+    st.builds(ChipSentence, u8, u8, u8, u8, u8, u8, u16),
     st.builds(BoardSentence, u8, u32, st.none() | u16, st.tuples(*[u16] * 4), st.tuples(*[u32] * 4)),
     st.builds(ErrorSentence, u8, u32, words, texts),
     st.builds(AckSentence, u8, words, st.lists(texts.filter(len), max_size=2).map(tuple)),
@@ -62,6 +63,7 @@ def test_the_shared_files_are_what_their_script_writes() -> None:
 
 SENTENCES: dict[str, Sentence] = {
     "hello of tile 7": HelloSentence(3, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128),
+    "hello of a tile with directions": HelloSentence(3, 7, 0xBEEF, 3, 2, 2000, 30, 0x0A, 0xC0FFEE, 128, 4),
     "tile before its first update": TileSentence(0, 0, 0, "", None, None, "----", bytes([0xC0, 0x80, 0x80])),
     "tile after its first update": TileSentence(
         255, 4294967295, 1, "4", 0, 30, "N-S-", bytes([0xC0, 0x8A, 0x6C])
@@ -70,6 +72,7 @@ SENTENCES: dict[str, Sentence] = {
     "link with a corrupt frame": LinkSentence(7, 300, "E", 1, 3, 1, 0, 0, 210, 12, 200, "W"),
     "time": TimeSentence(7, 1000, 14200, 163, 2048, 5000, 3),
     "chip": ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF),
+    "chip on a marked board": ChipSentence(7, 0xFF, 0xD8, 0xFD, 0xCF, 2, 1017),
     "board whose supply is not known": BoardSentence(7, 500, None, (0,) * 4, (0,) * 4),
     "board with a line that is low": BoardSentence(
         7, 60500, 4380, (1, 0, 65535, 12), (0, 0, 60000, 4294967295)
@@ -79,6 +82,8 @@ SENTENCES: dict[str, Sentence] = {
     "error with an address": ErrorSentence(0, 3, "WATCHDOG", "hung at 0x00A2C"),
     "answer to a period": AckSentence(7, "SET", ("period", "20")),
     "answer to a preset": AckSentence(7, "SET", ("preset", "paper")),
+    "answer to a marking": AckSentence(7, "MARK", ("2", "1017")),
+    "a marking that is for good": NakSentence(7, "MARKED", "MARK"),
     "answer to a new id": AckSentence(9, "SET", ("id", "9")),
     "answer to blink": AckSentence(7, "BLINK", ("5",)),
     "answer to restart": AckSentence(7, "RESTART"),

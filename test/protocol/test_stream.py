@@ -16,6 +16,8 @@ EVENTS = {
     "pace": stream.pace_event(1.0, 0.1, False, 0.98765, 2.5),
     "place": stream.place_event(1.0, "tile-03", (2, -1)),
     "cable": stream.cable_event(1.0, "tile-03", "E", whole=False),
+    "fault": stream.fault_event(1.0, "tile-03", turned=True, skew=-20000.12345),
+    "chip": stream.chip_event(1.0, "tile-03", {"pc": 0x743C, "function": "loop"}),
     "raw": stream.raw_event(1.23456789, "tile-03", b"$ASK*\xff"),
     "open": stream.open_event(1.0, "tile-03", False, "no power"),
     "deed": stream.deed_event(1.0, {"do": "pull", "port": "tile-03"}),

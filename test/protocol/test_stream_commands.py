@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.stream_commands import KINDS, MAX_TEXT, parse_command
 from tilenca.protocol.stream_fields import MOST_TILES
 
@@ -20,27 +21,31 @@ GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "rest", "on": True}, commands.Rest(True)),
     ({"do": "step", "seconds": 0.02}, commands.Step(0.02)),
     ({"do": "seek", "seconds": 0}, commands.Seek(0.0)),
+    ({"do": "instruct", "port": "tile-03"}, commands.Instruct("tile-03", 1)),
     (
         {
             "do": "open",
             "cells": [[0, 0]],
             "deeds": [[2, {"do": "pull", "port": "a"}], [1, {"do": "reset", "port": "b"}]],
         },
-        commands.Open(((0, 0),), deeds=((1.0, commands.Reset("b")), (2.0, commands.Pull("a")))),
+        commands.Open(((0, 0),), deeds=((1.0, hands.Reset("b")), (2.0, hands.Pull("a")))),
     ),
-    ({"do": "put", "row": -3, "col": 64}, commands.Put(-3, 64)),
-    ({"do": "pull", "port": "tile-03"}, commands.Pull("tile-03")),
-    ({"do": "move", "port": "tile-03", "row": 1, "col": 1}, commands.Move("tile-03", 1, 1)),
-    ({"do": "arrange", "cells": [[0, 0]]}, commands.Arrange(((0, 0),))),
-    ({"do": "cut", "port": "tile-03", "side": "E"}, commands.Cut("tile-03", "E", True)),
-    ({"do": "power", "port": "tile-03", "on": False}, commands.Power("tile-03", False)),
-    ({"do": "freeze", "port": "tile-03", "on": False}, commands.Freeze("tile-03", False)),
-    ({"do": "reset", "port": "tile-03"}, commands.Reset("tile-03")),
-    ({"do": "noise", "loss": 0.25}, commands.Noise(0.25)),
-    ({"do": "blink", "port": "/dev/ttyACM0"}, commands.Blink("/dev/ttyACM0", 5)),
-    ({"do": "restart", "port": "tile-03"}, commands.Restart("tile-03")),
-    ({"do": "set", "name": "period", "value": 50}, commands.Set("period", 50, None)),
-    ({"do": "set", "name": "brightness", "value": 9, "port": "a"}, commands.Set("brightness", 9, "a")),
+    ({"do": "put", "row": -3, "col": 64}, hands.Put(-3, 64)),
+    ({"do": "pull", "port": "tile-03"}, hands.Pull("tile-03")),
+    ({"do": "move", "port": "tile-03", "row": 1, "col": 1}, hands.Move("tile-03", 1, 1)),
+    ({"do": "shift", "ports": ["a", "b"], "rows": -1, "cols": 128}, hands.Shift(("a", "b"), -1, 128)),
+    ({"do": "arrange", "cells": [[0, 0]]}, hands.Arrange(((0, 0),))),
+    ({"do": "cut", "port": "tile-03", "side": "E"}, hands.Cut("tile-03", "E", True)),
+    ({"do": "power", "port": "tile-03", "on": False}, hands.Power("tile-03", False)),
+    ({"do": "freeze", "port": "tile-03", "on": False}, hands.Freeze("tile-03", False)),
+    ({"do": "turn", "port": "tile-03"}, hands.Turn("tile-03", True)),
+    ({"do": "skew", "port": "tile-03", "ppm": -2e4}, hands.Skew("tile-03", -20_000.0)),
+    ({"do": "reset", "port": "tile-03"}, hands.Reset("tile-03")),
+    ({"do": "noise", "loss": 0.25}, hands.Noise(0.25)),
+    ({"do": "blink", "port": "/dev/ttyACM0"}, hands.Blink("/dev/ttyACM0", 5)),
+    ({"do": "restart", "port": "tile-03"}, hands.Restart("tile-03")),
+    ({"do": "set", "name": "period", "value": 50}, hands.Set("period", 50, None)),
+    ({"do": "set", "name": "brightness", "value": 9, "port": "a"}, hands.Set("brightness", 9, "a")),
     ({"do": "seen", "batch": 12}, commands.Seen(12)),
 ]  # fmt: skip
 

@@ -46,6 +46,7 @@ def build(elf: object, threads: int = 1, translated: bool = False) -> Array:
     array.set_fault(0, EAST, LinkFault(loss=0.1, flip=0.02), seed=9)
     array[1].set_adc_noise(2.0, seed=4)
     array[2].set_drift(200.0)
+    array[1].set_skew(-500.0)
     for tile in array:
         tile.set_analog(0, 300 + tile.index)
     return array

@@ -1,6 +1,9 @@
 """What the tests of the host's side share."""
 
 import shutil
+import subprocess
+import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,3 +22,12 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for suffix in (".elf", ".hex"):
             shutil.copy(paths.FIRMWARE_ELF.with_suffix(suffix), folder)
     return folder / paths.FIRMWARE_ELF.name
+
+
+@cache
+def board_test_image() -> Path:
+    """The image of the environment `board_test`, built as users build it."""
+    pio = str(Path(sys.executable).with_name("pio"))
+    with alone("pio"):
+        subprocess.run([pio, "run", "-s", "-d", str(paths.ROOT), "-e", "board_test"], check=True)
+    return paths.ROOT / ".pio" / "build" / "board_test" / "firmware.elf"

@@ -18,6 +18,7 @@ from tilenca.training.trainer import Trainer
 from tilenca.training.update_schedule import Circumstances
 
 SMOKE = RECIPES["smoke"]
+DAMAGE = replace(SMOKE, directions=2.0, one_tile=1.0, damaged=0.5, unknown=0.1, switch=1.0, reset=0.0)
 
 
 def usual(batch: Batch, **given: NDArray[np.bool_]) -> Circumstances:
@@ -52,5 +53,7 @@ def trainer(seed: int = 1, recipe: Recipe = SMOKE) -> Trainer:
 def job_of(files: list[Path], out: Path, seed: int = 5, hidden: int = 12, recipe: Recipe = SMOKE) -> Job:
     task, sizes = load_training_task(files, recipe.stretch, 20)
     task = replace(task, labels=labels_of(task, recipe, 20))
-    config = Config(recipe, Dimensions(21, hidden, hidden), seed, task.labels, task.sources)
+    directions = 4 if recipe.directions else 0
+    dimensions = Dimensions(21 + directions, hidden, hidden, directions)
+    config = Config(recipe, dimensions, seed, task.labels, task.sources)
     return Job(config, task, sizes, "cpu", out, resume=False)

@@ -8,7 +8,7 @@ import pytest
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
 from tilenca.emulator.experiment import EmulationSettings
-from tilenca.emulator.faults import parse
+from tilenca.emulator.fault_spec import parse
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.file import Shape

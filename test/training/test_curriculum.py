@@ -87,3 +87,31 @@ def test_a_state_without_room_for_a_dash_gets_none() -> None:
     assert labels_of(task, FULL, 11) == (*"0123456789", UNKNOWN)
     assert labels_of(task, FULL, 10) == tuple("0123456789")
     assert labels_of(task, replace(FULL, unknown=0.0), 20) == tuple("0123456789")
+
+
+def test_what_is_missing_is_told_of_whole_drawings_and_of_clear_damage() -> None:
+    found = curriculum(1, replace(RECIPES["damage"], stretch=1.5, library=600))
+    assert found.gaps is not None
+    every = np.arange(len(found.kinds))
+    missing, told = found.missing(every)
+    starts = np.concatenate(([0], np.cumsum(found.drawings.sizes)[:-1]))
+    told, some = told[starts], np.logical_or.reduceat(missing.any(axis=1), starts)
+    assert told[~found.renewable].all()
+    assert not some[~found.renewable].any(), "whole drawings miss nothing"
+    assert not told[found.kinds == OF_NO_CLASS].any()
+    damaged = found.kinds == DAMAGED
+    assert 0.6 < some[damaged].mean() < 1
+    assert (some <= told).all()
+
+
+def test_a_drawing_and_the_same_with_a_tile_less_know_each_other() -> None:
+    found = curriculum(1, replace(RECIPES["damage"], stretch=1.5, library=600))
+    pairs = 0
+    for damaged in np.flatnonzero(found.kinds == DAMAGED):
+        for whole in found.with_one_tile_changed(int(damaged)):
+            pairs += 1
+            assert found.kinds[whole] in (DRAWN, STRETCHED)
+            assert found.drawings.sizes[whole] == found.drawings.sizes[damaged] + 1
+            assert damaged in found.with_one_tile_changed(int(whole))
+    assert pairs > 100
+    assert len(curriculum(1).with_one_tile_changed(0)) == 0, "another recipe does not ask"

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from tilenca.shapes.batch import NO_CLASS
-from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
+from tilenca.training.loss import BESIDE, GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
 
 # Three cells of a hidden channel and two scores: the first is perfect, the second undecided, the third wrong.
 END = torch.tensor([[0.5, 1.0, 0.0], [0.0, 0.5, 0.5], [0.0, 1.0, 0.0]])
@@ -58,3 +58,36 @@ def test_tiles_of_an_unlabelled_grid_are_pulled_to_the_class_that_they_favour_to
     assert agreed_targets(scores, target, starts).tolist() == [1, 1, 1, 1]
     assert agreed_targets(scores, target[:1].repeat(4), starts).tolist() == [1, 1, 1, 1]
     assert agreed_targets(scores.flip(1), target, starts).tolist() == [1, 0, 0, 0]
+
+
+# Four directions come before the two scores: the first cell says west, the second nothing, the third north.
+SIDES_SAID = torch.tensor(
+    [[0.0, 0.0, 0.0, 0.9, 1.0, 0.0], [0.4, 0.0, 0.0, 0.0, 1.0, 0.0], [0.7, 0.6, 0.0, 0.0, 1.0, 0.0]]
+)
+WEST, NOWHERE_, EAST = [0.0, 0.0, 0.0, 1.0], [0.0] * 4, [0.0, 1.0, 0.0, 0.0]
+GAPS = GapGoal(torch.tensor([WEST, NOWHERE_, EAST]), EVERY, 2.0)
+
+
+def test_directions_are_the_four_channels_before_the_scores() -> None:
+    assert directions_of(SIDES_SAID, 2)[0].tolist() == pytest.approx(WEST, abs=0.11)
+
+
+def test_the_error_of_the_directions_is_added_where_it_is_told_what_is_missing() -> None:
+    goal = Goal(2, torch.tensor([0, 0, 0]), EVERY, NONE, GAPS)
+    each = [2 * BESIDE * 0.1**2, 2 * 0.4**2, 2 * BESIDE * (0.7**2 + 0.4**2)]
+    assert loss_of(SIDES_SAID, SIDES_SAID, goal, 0.0).item() == pytest.approx(sum(each) / 3)
+    some = replace(goal, gaps=replace(GAPS, told=torch.tensor([True, True, False])))
+    assert loss_of(SIDES_SAID, SIDES_SAID, some, 0.0).item() == pytest.approx(sum(each[:2]) / 3)
+
+
+def test_a_cell_is_right_about_its_directions_by_what_a_tile_would_say() -> None:
+    assert GAPS.right(directions_of(SIDES_SAID, 2)).tolist() == [True, True, False]
+    assert replace(GAPS, told=NONE).right(directions_of(SIDES_SAID, 2)).all()
+
+
+def test_a_tile_that_says_the_wrong_direction_pays_nothing_for_a_change() -> None:
+    """All cells show their class and change by 0.5; the third says the wrong side, and may."""
+    start = SIDES_SAID.clone()
+    start[:, 4] += 0.5
+    goal = Goal(2, torch.tensor([0, 0, 0]), NONE, EVERY, GAPS)
+    assert loss_of(start, SIDES_SAID, goal, 4.0).item() == pytest.approx(4 * 2 * 0.25 / 3)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from support.training import SMOKE, trainer
+from support.training import DAMAGE, SMOKE, trainer
 from tilenca.base import paths
 from tilenca.shapes.batch import load_drawings
 from tilenca.training.curriculum import DRAWN, Curriculum
@@ -100,3 +100,20 @@ def test_undisturbed_grids_that_went_wrong_are_taken_first() -> None:
     pools.undisturbed.wrong[:20] = True
     some = [int((pools.take(0.5).undisturbed < 20).sum()) for _ in range(50)]
     assert np.mean(some) < 8, "most of a batch are any grids"
+
+
+def test_where_directions_are_trained_grids_are_rebuilt_by_one_tile() -> None:
+    """Every rebuilt grid that has such a drawing gets one; so a tile is missing, or is back."""
+    learner = trainer(recipe=DAMAGE)
+    pools = learner.pools
+    changed = 0
+    for number in range(len(pools.perturbed.drawing)):
+        old = int(pools.perturbed.drawing[number])
+        near = pools.curriculum.with_one_tile_changed(old)
+        pools.switch(pools.perturbed, number)
+        if len(near):
+            new = int(pools.perturbed.drawing[number])
+            assert new in near
+            assert abs(int(pools.drawings.sizes[new]) - int(pools.drawings.sizes[old])) == 1
+            changed += 1
+    assert changed > 3

@@ -16,5 +16,7 @@ def test_grids_that_were_switched_on_late_or_lack_a_tile_do_not_count() -> None:
     nothing = np.zeros(cells, np.bool_)
     given = Circumstances(np.array([True, False, False]), away, np.zeros(3, np.bool_), nothing)
     states = np.zeros((cells, 21), np.float32)
-    taken = Taken(np.array([5, 3]), np.array([9]), batch, states, np.zeros(3, np.bool_), given)
+    taken = Taken(
+        np.array([5, 3]), np.array([9]), batch, states, np.zeros(3, np.bool_), given, np.array([1, 4, 7])
+    )
     assert taken.counted.tolist() == [False, True, False]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from support.training import SMOKE, job_of, trainer
+from support.training import DAMAGE, SMOKE, job_of, trainer
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.evaluation.metrics import TARGETS, Target
@@ -106,3 +106,25 @@ def test_a_gpu_trains_the_same_but_for_rounding(tmp_path: Path) -> None:
     for _ in range(3):
         losses = [learner.step().loss for learner in learners]
         assert losses[1] == pytest.approx(losses[0], rel=1e-3)
+
+
+def test_the_error_of_the_directions_trains_their_channels() -> None:
+    """They begin at zero, which is right for most tiles: what moves them are the tiles beside gaps."""
+    learner = trainer(recipe=replace(DAMAGE, batch=16, perturbed_pool=48))
+    learner.step()
+    bias = learner.net.arrays()["b3"]
+    first = len(bias) - len(learner.config.labels) - 4
+    assert (bias[first : first + 4] > 0).any()
+    model, _ = model_of(learner.now(), {})
+    assert model.dimensions.directions == 4
+
+
+def test_directions_are_right_only_if_all_tiles_of_a_grid_say_them() -> None:
+    learner = trainer(recipe=DAMAGE)
+    taken = learner.pools.take(0.5)
+    gaps = learner._gaps(taken)
+    assert gaps is not None
+    assert gaps.missing.shape == (len(taken.batch.sample), 4)
+    drawn = learner.pools.drawings.shapes[taken.drawing[0]]
+    assert len(drawn.cells) == (taken.batch.sample == 0).sum(), "drawings are those of the grids"
+    assert trainer()._gaps(taken) is None

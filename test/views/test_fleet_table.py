@@ -62,6 +62,22 @@ def test_a_line_that_stays_low_is_noted() -> None:
     assert cells(view, 2.0)[-1] == ""
 
 
+def test_what_a_tile_says_is_missing_is_noted() -> None:
+    """Seven channels: the seed's, the four directions, two classes; messages are sent with 128 added."""
+    view = TileView("p")
+    view.take(PortNews(0.0, "p", is_open=True))
+    for directions, scores, note in (
+        (4, (0, 33, 40, 0), "none at S"),
+        (4, (40, 40, 0, 0), "none at N"),
+        (4, (32, 32, 0, 32), ""),
+        (0, (0, 33, 40, 0), ""),
+    ):
+        view.take(Heard(1.0, "p", b"", HelloSentence(3, 7, 0, 7, 2, 100, 0, 0, 0, 255, directions)))
+        state = bytes(128 + score for score in (64, *scores, 64, 0))
+        view.take(Heard(1.1, "p", b"", TileSentence(7, 100, 1, "4", 0, 64, "N-S-", state)))
+        assert cells(view, 1.2)[-1] == note
+
+
 def test_a_tile_that_fell_silent_is_marked() -> None:
     view = TileView("p")
     view.take(PortNews(0.0, "p", is_open=True))

@@ -20,6 +20,7 @@ SECONDS = 2.0
 EVENTS: list[tuple[float, str, Any]] = [
     (0.0, "noise", [3, 2.0]),
     (0.0, "drift", [5, 40.0]),
+    (0.1, "skew", [8, -4000.0]),
     (0.2, "fault", [0, EAST, {"loss": 0.2, "flip": 0.001}]),
     (0.2, "fault", [6, SOUTH, {"flip": 0.01}]),
     (0.3, "fault", [7, WEST, {"loss": 0.5, "delayS": 0.003}]),
@@ -49,6 +50,8 @@ def act(array: Array, name: str, arguments: list[Any], seed: int) -> None:
         tile.powered = arguments[1]
     elif name == "noise":
         tile.set_adc_noise(arguments[1], seed)
+    elif name == "skew":
+        tile.set_skew(arguments[1])
     elif name == "drift":
         tile.set_drift(arguments[1])
     elif name == "send":

@@ -2,6 +2,7 @@
 
 import json
 import random
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +28,18 @@ HANDS: list[dict[str, Any]] = [
     {"do": "noise", "loss": 0.03},
     {"do": "move", "port": "tile-16", "row": 5, "col": 0},
     {"do": "put", "row": 3, "col": 0},
+    {"do": "shift", "ports": ["tile-14", "tile-13"], "rows": 2, "cols": -1},
     {"do": "put", "row": 7, "col": 7},
     {"do": "cut", "port": "tile-03", "side": "W", "on": False},
     {"do": "power", "port": "tile-01", "on": False},
+    {"do": "turn", "port": "tile-07"},
+    {"do": "cut", "port": "tile-07", "side": "E"},
+    {"do": "skew", "port": "tile-08", "ppm": 30_000},
     {"do": "pace", "speed": 1, "paused": True},
     {"do": "freeze", "port": "tile-02"},
     {"do": "reset", "port": "tile-05"},
+    {"do": "turn", "port": "tile-07", "on": False},
+    {"do": "skew", "port": "tile-08", "ppm": 0},
     {"do": "power", "port": "tile-01", "on": True},
     {"do": "freeze", "port": "tile-02", "on": False},
     {"do": "blink", "port": "tile-03", "seconds": 1},
@@ -52,14 +59,25 @@ MISTAKES: list[dict[str, Any]] = [
     {"do": "noise", "loss": 2},
     {"do": "step", "seconds": 99},
     {"do": "move", "port": "tile-01", "row": 0, "col": 0, "why": 1},
+    {"do": "shift", "ports": ["tile-01"], "rows": 0, "cols": 1},
+    {"do": "shift", "ports": ["tile-01"], "rows": 0, "cols": -65},
+    {"do": "shift", "ports": ["tile-01", "tile-99"], "rows": 1, "cols": 0},
+    {"do": "shift", "ports": "tile-01", "rows": 1, "cols": 0},
+    {"do": "shift", "ports": [""], "rows": 1, "cols": 129},
     {"do": "arrange", "cells": []},
     {"do": "arrange", "cells": [[0, 0], [0]]},
     {"do": "arrange", "cells": [[0, 0]] * 2},
     {"do": "arrange", "cells": [[0, 1.5]]},
     {"do": "open", "cells": [[0, index] for index in range(-64, 64)] + [[1, index] for index in range(17)]},
     {"do": "freeze", "port": "tile-01", "on": 1},
+    {"do": "turn", "port": "tile-01", "on": 0},
+    {"do": "skew", "port": "tile-01", "ppm": 100_001},
+    {"do": "instruct", "port": "tile-09"},
+    {"do": "instruct", "port": "tile-01", "count": 1001},
     {"do": "set", "name": "id", "value": 1},
     {"do": "set", "name": "period", "value": 9},
+    {"do": "set", "name": "period", "value": 10_001},
+    {"do": "set", "name": "brightness", "value": 256},
     {"do": "set", "name": "period", "value": 20, "port": ""},
     {"do": "blink", "port": "tile-01", "seconds": 61},
     {"do": "open", "cells": [[0, 0]], "deeds": [[1, 2]]},
@@ -70,7 +88,7 @@ MISTAKES: list[dict[str, Any]] = [
     {"do": "constructor"},
     *({"do": "open", "cells": [[0, 0], [0, 1]], "faults": [fault]} for fault in [
         "fly", "loss", "loss=2", "cut", "cut=1@1", "loss=x", "off@3", "off@1:2-1", "reset@1:1-2", "cut@1N",
-        "cut@1:x", "delay=5@1:1:2", "",
+        "cut@1:x", "turn", "turn=1@1", "skew=-100001@1", "skew=-x", "loss=-1", "delay=5@1:1:2", "",
     ]),
 ]  # fmt: skip
 
@@ -123,6 +141,12 @@ def labels_at_last(answers: list[list[StreamEvent]]) -> dict[str, str]:
     return said
 
 
+def said_until(answers: list[list[StreamEvent]], time_s: float) -> set[tuple[float, str, str]]:
+    """All lines, of which some are told again after a jump."""
+    said = [event for events in answers for event in events if "raw" in event]
+    return {(event["time"], event["port"], event["raw"]) for event in said if event["time"] < time_s}
+
+
 @pytest.mark.parametrize("seed", [0, 2**53 - 1])
 def test_two_seconds_of_an_eight_are_told_alike(both: Any, seed: int) -> None:
     step = {"do": "step", "seconds": STEP_S}
@@ -135,7 +159,7 @@ def test_two_seconds_of_an_eight_are_told_alike(both: Any, seed: int) -> None:
 def test_hands_and_faults_are_told_alike(both: Any) -> None:
     faults = ["flip=0.001@3E", "loss=0.02:0.1-0.6", "delay=3@2:0.2-0.4", "cut@1-2:0.3-0.5", "off@7:0.2-0.8",
               "reset@9:0.4", "drift=400", "drift=90@2", "adc=2", "supply=4.3@4:0.1-0.4",
-              "remove@5:1.2"]  # fmt: skip
+              "turn@8:0.1-0.3", "skew=-9000@6:0.1-0.4", "skew=500", "remove@5:1.2"]  # fmt: skip
     commands = [opened(7, cells=EIGHT[:10], faults=faults)]
     commands += [{"do": "step", "seconds": 0.05}] * 10 + [
         opened(random.Random(3).randrange(2**53), cells=EIGHT)
@@ -158,6 +182,8 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     ]
     commands += [
         {"do": "pull", "port": "tile-11"},
+        {"do": "turn", "port": "tile-02"},
+        {"do": "skew", "port": "tile-03", "ppm": 5000},
         *[step] * 4,
         {"do": "put", "row": 7, "col": 7},
         *[step] * 4,
@@ -166,6 +192,10 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     commands += [{"do": "seek", "seconds": 0.0}, *[step] * 2, {"do": "noise", "loss": 0.1}, *[step] * 3]
     commands += [{"do": "seek", "seconds": 9}, {"do": "seek", "seconds": 0.1}, step]
     answers = both(commands)
+    after = [events[1:] for events in answers if any("jump" in event for event in events)]
+    spoilt = [{event["port"]: event["fault"] for event in events if "fault" in event} for events in after]
+    known = {"tile-02": {"turned": True, "skew": 0}, "tile-03": {"turned": False, "skew": 5000}}
+    assert spoilt == [{}, known, {}, {}, {}]  # told anew where they stand
     jumps = [event for events in answers for event in events if "jump" in event]
     came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
     assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
@@ -204,6 +234,30 @@ def test_planned_deeds_are_told_alike(both: Any) -> None:
     answers = both([*commands, {"do": "noise", "loss": 0.2}, *[step] * 2])
     told = [event["deed"]["do"] for events in answers for event in events if "deed" in event]
     assert told == ["put", "freeze", "pull", "arrange", "noise"]
+
+
+def test_single_instructions_are_told_alike_and_change_nothing(both: Any) -> None:
+    """Registers, variables and stack; the run goes on as it would have done."""
+    step = {"do": "step", "seconds": 0.05}
+    begin = [opened(5, cells=EIGHT[:6], speed=0.1), step, step, step]
+    single = [
+        {"do": "instruct", "port": "tile-02", "count": 0},
+        *[{"do": "instruct", "port": "tile-02"}] * 8,
+        {"do": "instruct", "port": "tile-03", "count": 700},
+        {"do": "instruct", "port": "tile-02", "count": 1000},
+    ]
+    end = [{"do": "seek", "seconds": 9}, step, {"do": "noise", "loss": 0.1}, step]
+    answers = both([*begin, *single, *end])
+    chips = [event["chip"] for events in answers for event in events if "chip" in event]
+    assert len(chips) == len(single)
+    assert len({chip["pc"] for chip in chips[:9]}) > 4
+    assert [later["cycles"] > sooner["cycles"] for sooner, later in pairwise(chips[:9])] == [True] * 8
+    names = [name for name, *_ in chips[0]["variables"]]
+    assert "tilenca_sending" in names
+    assert any(chip["function"] for chip in chips)
+    without = both([opened(5, cells=EIGHT[:6], speed=0.1), *[step] * 4])
+    assert said_until(answers, 0.19) == said_until(without, 0.19)
+    assert len(said_until(without, 0.19)) > 10
 
 
 def test_mistakes_are_refused_alike(both: Any) -> None:

@@ -107,10 +107,23 @@ def compared(models: tuple[str, ...]) -> Iterator[list[str]]:
         ]
 
 
+def directions() -> Iterator[list[str]]:
+    """The rows about missing tiles of the model that says where they are."""
+    yield ["`models/damage`", "after steps", "of", "share", "95 % interval", "target"]
+    for row in metrics_of("damage")["rows"]:
+        if row["key"] == "directions":
+            target = (
+                "" if row["target"] is None else f"{row['target']:.2f}{'' if row['holds'] else ' missed'}"
+            )
+            share, low, high = (f"{row[name]:.3f}" for name in ("share", "low", "high"))
+            yield [row["name"], str(row["steps"]), f"{row['runs']:,}", share, f"{low} to {high}", target]
+
+
 TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
     "digits": digits,
     "widths": lambda: compared(WIDTHS),
     "tasks": lambda: compared(TASKS),
+    "directions": directions,
 }
 
 

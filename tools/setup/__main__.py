@@ -21,6 +21,7 @@ LEVELS = {
     "docs": "as train, and build the documentation site",
     "check": "as test and docs, and check format, lint, types and budgets",
     "web": "as demo, and compile for browsers",
+    "fuzz": "as demo, and fuzz what parses",
 }
 # The levels that each one includes.
 INCLUDED = {
@@ -29,6 +30,7 @@ INCLUDED = {
     "docs": ["train"],
     "check": ["test", "docs"],
     "web": ["demo"],
+    "fuzz": ["demo"],
 }
 # Debian packages by level. The tests seed PlatformIO for real, needed here or not.
 SYSTEM_PACKAGES = {
@@ -42,6 +44,7 @@ NEXT = {
     "docs": "make docs",
     "check": "make check",
     "web": "make web",
+    "fuzz": "make fuzz TIME=60",
 }
 
 
@@ -68,6 +71,8 @@ def bring_up_to(levels: Sequence[str]) -> None:
             with compiler:
                 packages(levels[:1])  # the demo's, among them the compiler
             packages(levels[1:])
+            if "fuzz" in levels:
+                native.install_system_packages(native.fuzz_packages())
             if "web" in levels:
                 native.install_system_packages(web.system_packages())
 

@@ -30,6 +30,17 @@ def browser_packages(os_release: Path = Path("/etc/os-release")) -> list[str]:
     return ["chromium", "fonts-dejavu-core"] if is_debian else []
 
 
+def fuzz_packages() -> list[str]:
+    """Debian's clang, and the libraries of its sanitizers and fuzzer, whose name has its version."""
+    depends = ["apt-cache", "depends", "clang"]
+    try:
+        told = subprocess.run(depends, capture_output=True, text=True, check=False).stdout
+    except OSError:
+        return ["clang"]
+    found = re.search(r"\bclang-(\d+)\b", told)
+    return ["clang", *([f"libclang-rt-{found[1]}-dev"] if found else [])]
+
+
 def install_system_packages(packages: Sequence[str]) -> None:
     """Installs those of the packages that are missing, by apt.
 

@@ -23,9 +23,10 @@ EXTRAS = {
     "check": ["check"],
     "docs": ["docs"],
     "web": [],
+    "fuzz": [],
 }
 # What they take on the disk, roughly: it says how long the download may be.
-SIZE_MB = {"demo": 110, "train": 1180, "test": 180, "check": 310, "docs": 80, "web": 0}
+SIZE_MB = {"demo": 110, "train": 1180, "test": 180, "check": 310, "docs": 80, "web": 0, "fuzz": 0}
 # The current version is here; an installed package has the version of its installation.
 VERSION_FILE = ROOT / "host" / "tilenca" / "__init__.py"
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|docs|check|web] [--next]
+# Makes this clone ready: sh tools/setup/setup.sh [demo|train|test|docs|check|web|fuzz] [--next]
 #
 # This part finds or installs Python; tools/setup/__main__.py does the rest.
 set -eu

@@ -112,10 +112,7 @@ export class Tile {
     this.#call("set_power", Number(on));
   }
 
-  /**
-   * Holds the push button down, or lets it go.
-   * @param {boolean} [pressed]
-   */
+  /** Holds the push button down, or lets it go. @param {boolean} [pressed] */
   pressButton(pressed = true) {
     this.#call("press_button", Number(pressed));
   }
@@ -128,12 +125,14 @@ export class Tile {
     this.#call("reset", cause === "external" ? 2 : 4);
   }
 
-  /**
-   * From now on the clock error grows by so much a second.
-   * @param {number} ppmPerS
-   */
+  /** From now on the clock error grows by so much a second. @param {number} ppmPerS */
   setDrift(ppmPerS) {
     this.#call("set_drift", ppmPerS);
+  }
+
+  /** From now on the clock is so much faster than it would be. @param {number} ppm */
+  setSkew(ppm) {
+    this.#call("set_skew", ppm);
   }
 
   // --- USB ---

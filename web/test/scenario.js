@@ -47,6 +47,7 @@ const acts = {
   reset: (tile) => array.tile(tile).reset(),
   noise: (tile, deviation) => array.tile(tile).setAdcNoise(deviation, scenario.seed),
   drift: (tile, ppmPerS) => array.tile(tile).setDrift(ppmPerS),
+  skew: (tile, ppm) => array.tile(tile).setSkew(ppm),
   send: (tile, text) => array.tile(tile).send(text),
   press: (tile, pressed) => array.tile(tile).pressButton(pressed),
 };

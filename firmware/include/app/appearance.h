@@ -14,8 +14,9 @@ struct Appearance {
     static constexpr uint8_t kFound = 0xFE;
 };
 
-// A side's LED is lit while its neighbour is alive, and blinks while the neighbour runs another model. With
-// `blinking`, a white 8 blinks instead of the class.
+// A side's LED is lit while its neighbour is alive, and blinks while the neighbour runs another model; or, by
+// a setting, it is lit while the tile says that one is missing there. With `blinking`, a white 8 blinks
+// instead of the class.
 Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms);
 
 // The look of `shown` at the tile's brightness.

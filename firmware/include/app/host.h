@@ -34,8 +34,9 @@ class Host {
     Result receive(uint8_t byte, Tile* tile, uint32_t now_ms, Sentence* sentence);
     Result obey(Tile* tile, uint32_t now_ms, Sentence* sentence);
     Result begin_set(const Tile& tile, Sentence* sentence);
+    Result begin_mark(const Tile& tile, Sentence* sentence);
     void end_set(bool stored, Tile* tile, Sentence* sentence);
-    bool change(Settings* settings) const;
+    bool change(uint16_t most_leds, Settings* settings) const;
     void begin_ack(const Tile& tile, Sentence* sentence) const;
     void write_nak(const Tile& tile, const char* reason, const char* name, Sentence* sentence) const;
 
@@ -43,6 +44,7 @@ class Host {
     const Boot& boot_;
     CommandReader reader_;
     Settings wanted_ = {}; // by the last command
+    Block wanted_in_ = Block::Settings;
     bool storing_ = false; // they are being written, and the answer is due
     bool blinking_ = false;
     uint32_t blink_until_ms_ = 0;
@@ -54,7 +56,7 @@ bool Host::answer(Store& store, Read read, Tile* tile, uint32_t now_ms, Sentence
         storing_ = false;
         const bool stored = store.verify();
         if (!stored) {
-            store.write(tile->settings()); // back
+            store.write(wanted_in_, tile->settings()); // back
         }
         end_set(stored, tile, sentence);
         return true;
@@ -62,7 +64,7 @@ bool Host::answer(Store& store, Read read, Tile* tile, uint32_t now_ms, Sentence
     for (uint8_t byte; read(&byte);) {
         const Result result = receive(byte, tile, now_ms, sentence);
         if (result == Result::Store) {
-            store.write(wanted_);
+            store.write(wanted_in_, wanted_);
             storing_ = true;
             return false;
         }

@@ -1,5 +1,5 @@
-// Keeps the settings in EEPROM, in two blocks: docs/PROTOCOL.md section 5. The second block is written first,
-// so one of both is whole whenever the power fails.
+// Keeps the settings in EEPROM, in two blocks of each kind: docs/PROTOCOL.md section 5. The second block is
+// written first, so one of both is whole whenever the power fails.
 //
 // `Eeprom` is any memory whose bytes are written slowly and one at a time. It has
 //
@@ -22,12 +22,14 @@ class SettingsStore {
     explicit SettingsStore(Eeprom eeprom = Eeprom()) : eeprom_(eeprom) {}
 
     // Reads the settings at the start; leaves them unchanged if there are none. If a byte was being written
-    // when a reset came, waits for its end, 3.4 ms at most.
-    Found load(Settings* settings);
+    // when a reset came, waits for its end, 3.4 ms at most. If another block is still to be mended, waits
+    // for that, too.
+    Found load(Block kind, Settings* settings);
 
-    // Begins to write settings into both blocks; writing() does it.
-    void write(const Settings& settings) {
-        write_settings(settings, block_);
+    // Begins to write settings into both blocks of a kind; writing() does it.
+    void write(Block kind, const Settings& settings) {
+        write_settings(kind, settings, block_);
+        start_ = start_of(kind);
         written_ = 0;
     }
 
@@ -40,25 +42,28 @@ class SettingsStore {
   private:
     static constexpr uint8_t kBytes = 2 * kSettingsSize;
 
+    static uint8_t start_of(Block kind) { return kind == Block::Marking ? kBytes : 0; }
     void read(uint8_t address, uint8_t (&block)[kSettingsSize]);
 
     Eeprom eeprom_;
+    uint8_t start_ = 0; // address of the first block
     uint8_t block_[kSettingsSize] = {};
     uint8_t written_ = kBytes; // of both blocks, the second one first
 };
 
 template <class Eeprom>
-typename SettingsStore<Eeprom>::Found SettingsStore<Eeprom>::load(Settings* settings) {
-    while (eeprom_.busy()) {
+typename SettingsStore<Eeprom>::Found SettingsStore<Eeprom>::load(Block kind, Settings* settings) {
+    while (writing()) {
     }
     uint8_t first[kSettingsSize], second[kSettingsSize];
-    read(0, first);
-    read(kSettingsSize, second);
-    if (parse_settings(first, settings)) {
+    read(start_of(kind), first);
+    read(start_of(kind) + kSettingsSize, second);
+    if (parse_settings(kind, first, settings)) {
         return Found::Settings;
     }
-    if (parse_settings(second, settings)) {
-        write(*settings); // the next change writes the second block first: the first must be whole by then
+    if (parse_settings(kind, second, settings)) {
+        write(kind,
+              *settings); // the next change writes the second block first: the first must be whole by then
         return Found::Settings;
     }
     return is_blank(first) ? Found::Nothing : Found::Damage;
@@ -72,7 +77,7 @@ bool SettingsStore<Eeprom>::writing() {
     while (written_ < kBytes) {
         const bool second = written_ < kSettingsSize;
         const uint8_t byte = block_[second ? written_ : written_ - kSettingsSize];
-        const uint8_t address = second ? kSettingsSize + written_ : written_ - kSettingsSize;
+        const uint8_t address = start_ + (second ? kSettingsSize + written_ : written_ - kSettingsSize);
         ++written_;
         if (eeprom_.read(address) != byte) {
             eeprom_.write(address, byte);
@@ -85,7 +90,7 @@ bool SettingsStore<Eeprom>::writing() {
 template <class Eeprom>
 bool SettingsStore<Eeprom>::verify() {
     for (uint8_t i = 0; i < kBytes; ++i) {
-        if (eeprom_.read(i) != block_[i % kSettingsSize]) {
+        if (eeprom_.read(start_ + i) != block_[i % kSettingsSize]) {
             return false;
         }
     }

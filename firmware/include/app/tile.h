@@ -50,6 +50,9 @@ class Tile {
     uint8_t shown() const { return decided_.best; }
     uint8_t margin() const { return decided_.margin; }
 
+    // The side on which a tile is missing, as missing_side() says. Only if the model has directions.
+    uint8_t missing() const { return missing_side(message() + cell_.channels() - model_.classes - kSides); }
+
     uint32_t updates() const { return updates_; }
     const Link& link(Side side) const { return links_[index_of(side)]; }
     const int8_t* message() const { return cell_.message(); }

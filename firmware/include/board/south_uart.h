@@ -14,8 +14,9 @@ namespace tilenca {
 namespace board {
 
 // Counts of timer 1 per bit. 16 MHz / 38,400 would be 416.7. A slightly slow sender lets the receiver sample
-// the stop bit well before the next start bit, even if that one comes early after an edge that came late.
-constexpr uint16_t kSouthBitCycles = 420;
+// the stop bit well before the next start bit, even if that one comes early after an edge that came late. Of
+// 416 to 420, 419 bears clocks that differ most, in both directions (docs/HARDWARE.md).
+constexpr uint16_t kSouthBitCycles = 419;
 
 // Takes timers 1 and 5 and the pin-change interrupt of port K.
 void south_begin();

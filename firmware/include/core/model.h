@@ -22,6 +22,7 @@ struct Model {
     uint8_t classes;
     Network network;
     FlashView<Look> looks; // one per class
+    uint8_t directions;    // kSides: the channels before the classes say where a tile is missing; 0: none do
 };
 
 } // namespace tilenca

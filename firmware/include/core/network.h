@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "core/layer.h"
+#include "core/side.h"
 
 namespace tilenca {
 
@@ -48,6 +49,12 @@ struct Decision {
     static constexpr uint8_t kNoMargin = 255; // there is only one class
 };
 Decision decide(const int16_t* scores, uint8_t classes);
+
+constexpr int8_t kMissing = 32; // one half of a score, as a message
+
+// The side on which another tile is missing: that with the greatest of four scores, N E S W, the first among
+// equals, if it is above kMissing; else kSides. Twin of host/tilenca/model/directions.py.
+uint8_t missing_side(const int8_t* scores);
 
 // The sum of 5 C messages.
 int16_t sum_of_messages(const int8_t* messages, uint8_t channels);

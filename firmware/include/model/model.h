@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model D968; do not edit. Body ecade7f02d416764
+// Rendered by `tilenca export` from model D968; do not edit. Body b78e85f6bc2db03b
 #pragma once
 
 #include <stdint.h>
@@ -12,6 +12,7 @@ constexpr uint16_t kModelId = 0xD968;
 constexpr uint8_t kChannels = 21;
 constexpr uint8_t kHidden1 = 96;
 constexpr uint8_t kHidden2 = 96;
+constexpr uint8_t kDirections = 0;
 constexpr uint8_t kClasses = 11; // 0 1 2 3 4 5 6 7 8 9 -
 
 static_assert(kChannels <= kMaxChannels && kHidden1 <= kMaxHidden && kHidden2 <= kMaxHidden, "too wide");

@@ -22,7 +22,13 @@ Appearance appearance_of(const Tile& tile, bool blinking, uint32_t now_ms) {
     if (blinking) {
         appearance.shown = lit_phase(now_ms) ? Appearance::kFound : Tile::kNothing;
     }
-    for (uint8_t i = 0, mask = 1; i < kSides && !tile.settings().leds_off; ++i, mask <<= 1) {
+    const uint8_t leds = tile.settings().leds;
+    if (leds == kLedsMissing && tile.model().directions) {
+        const uint8_t side = tile.missing();
+        appearance.leds = side < kSides ? 1 << side : 0;
+        return appearance;
+    }
+    for (uint8_t i = 0, mask = 1; i < kSides && leds != kLedsDark; ++i, mask <<= 1) {
         const Link& link = tile.link(side_at(i));
         if (link.alive() || (link.foreign() && lit_phase(now_ms))) {
             appearance.leds |= mask;

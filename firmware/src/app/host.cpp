@@ -2,6 +2,10 @@
 
 #include <string.h>
 
+#ifdef __AVR__
+#pragma GCC optimize("Os") // it runs once in a while, and flash is short
+#endif
+
 namespace tilenca {
 
 namespace {
@@ -11,6 +15,24 @@ constexpr uint16_t kPaperUpdates = 30;
 
 bool equal(const char* a, const char* b) {
     return strcmp(a, b) == 0;
+}
+
+enum Command : uint8_t { kAsk, kChip, kSet, kMark, kBlink, kRestart, kNone };
+constexpr const char* kCommands[kNone] = {"ASK", "CHIP", "SET", "MARK", "BLINK", "RESTART"};
+constexpr uint8_t kFields[kNone] = {1, 1, 3, 0, 2, 1}; // the name is one; MARK has three or four
+
+enum Setting : uint8_t { kId, kPeriod, kUpdates, kBrightness, kLeds, kNoSetting };
+constexpr const char* kSettings[kNoSetting] = {"id", "period", "updates", "brightness", "leds"};
+constexpr uint16_t kMost[kLeds] = {0xFF, kMaxPeriodMs, 0xFFFF, 0xFF}; // of the LEDs: by the model
+
+// The index of a name, or the number of names.
+template <uint8_t kNames>
+uint8_t index_in(const char* const (&names)[kNames], const char* name) {
+    uint8_t index = 0;
+    while (index < kNames && !equal(names[index], name)) {
+        ++index;
+    }
+    return index;
 }
 
 } // namespace
@@ -33,43 +55,70 @@ Host::Result Host::receive(uint8_t byte, Tile* tile, uint32_t now_ms, Sentence* 
 
 Host::Result Host::obey(Tile* tile, uint32_t now_ms, Sentence* sentence) {
     const char* name = reader_.field(0);
+    const uint8_t command = index_in(kCommands, name);
     uint16_t seconds;
-    if (equal(name, "ASK") && reader_.fields() == 1) {
+    if (command == kMark) {
+        return begin_mark(*tile, sentence);
+    }
+    if (command == kNone || reader_.fields() != kFields[command]) {
+        write_nak(*tile, command == kNone ? "UNKNOWN" : "VALUE", name, sentence);
+    } else if (command == kAsk) {
         write_hello(*tile, boot_, sentence);
-    } else if (equal(name, "CHIP") && reader_.fields() == 1) {
+    } else if (command == kChip) {
         write_chip(*tile, boot_, sentence);
-    } else if (equal(name, "SET") && reader_.fields() == 3) {
+    } else if (command == kSet) {
         return begin_set(*tile, sentence);
-    } else if (equal(name, "BLINK") && reader_.fields() == 2 &&
-               number_of(reader_.field(1), kMaxBlinkS, &seconds)) {
+    } else if (command == kRestart) {
+        tile->restart();
+        begin_ack(*tile, sentence);
+        sentence->end();
+    } else if (number_of(reader_.field(1), kMaxBlinkS, &seconds)) {
         blinking_ = true;
         blink_until_ms_ = now_ms + 1000UL * seconds;
         begin_ack(*tile, sentence);
         sentence->number(seconds);
         sentence->end();
-    } else if (equal(name, "RESTART") && reader_.fields() == 1) {
-        tile->restart();
-        begin_ack(*tile, sentence);
-        sentence->end();
     } else {
-        const bool known = equal(name, "ASK") || equal(name, "CHIP") || equal(name, "SET") ||
-                           equal(name, "BLINK") || equal(name, "RESTART");
-        write_nak(*tile, known ? "VALUE" : "UNKNOWN", name, sentence);
+        write_nak(*tile, "VALUE", name, sentence);
     }
     return Result::Answer;
 }
 
 Host::Result Host::begin_set(const Tile& tile, Sentence* sentence) {
     wanted_ = tile.settings();
-    if (!change(&wanted_)) {
+    wanted_in_ = Block::Settings;
+    if (!change(tile.model().directions ? 2 : 1, &wanted_)) {
         write_nak(tile, "VALUE", reader_.field(0), sentence);
         return Result::Answer;
     }
     return Result::Store;
 }
 
+// A marking is for good: another one is refused, unless the command says that it is to replace it.
+Host::Result Host::begin_mark(const Tile& tile, Sentence* sentence) {
+    uint16_t revision = 0, serial = 0;
+    const bool replace = equal(reader_.field(3), "replace");
+    const char* refusal = nullptr;
+    wanted_ = tile.settings();
+    wanted_in_ = Block::Marking;
+    if (!number_of(reader_.field(1), 0xFF, &revision) || !number_of(reader_.field(2), 0xFFFF, &serial) ||
+        revision == 0 || reader_.fields() != (replace ? 4 : 3)) {
+        refusal = "VALUE";
+    } else if (wanted_.revision != 0 && !replace &&
+               (wanted_.revision != revision || wanted_.serial != serial)) {
+        refusal = "MARKED";
+    }
+    if (refusal != nullptr) {
+        write_nak(tile, refusal, reader_.field(0), sentence);
+        return Result::Answer;
+    }
+    wanted_.revision = static_cast<uint8_t>(revision);
+    wanted_.serial = serial;
+    return Result::Store;
+}
+
 // Changes the setting that the command names. False if there is no such setting or value.
-bool Host::change(Settings* settings) const {
+bool Host::change(uint16_t most_leds, Settings* settings) const {
     const char* name = reader_.field(1);
     const char* text = reader_.field(2);
     uint16_t number = 0;
@@ -79,18 +128,21 @@ bool Host::change(Settings* settings) const {
         settings->updates = paper ? kPaperUpdates : defaults_.updates;
         return paper || equal(text, "default");
     }
-    if (equal(name, "id") && number_of(text, 0xFF, &number)) {
-        settings->tile_id = static_cast<uint8_t>(number);
-    } else if (equal(name, "period") && number_of(text, kMaxPeriodMs, &number) && number >= kMinPeriodMs) {
-        settings->period_ms = number;
-    } else if (equal(name, "updates") && number_of(text, 0xFFFF, &number)) {
-        settings->updates = number;
-    } else if (equal(name, "brightness") && number_of(text, 0xFF, &number)) {
-        settings->brightness = static_cast<uint8_t>(number);
-    } else if (equal(name, "leds") && number_of(text, 1, &number)) {
-        settings->leds_off = number == 0;
-    } else {
+    const uint8_t setting = index_in(kSettings, name);
+    if (setting == kNoSetting || !number_of(text, setting == kLeds ? most_leds : kMost[setting], &number)) {
         return false;
+    }
+    if (setting == kId) {
+        settings->tile_id = static_cast<uint8_t>(number);
+    } else if (setting == kPeriod) {
+        settings->period_ms = number;
+        return number >= kMinPeriodMs;
+    } else if (setting == kUpdates) {
+        settings->updates = number;
+    } else if (setting == kBrightness) {
+        settings->brightness = static_cast<uint8_t>(number);
+    } else {
+        settings->leds = number == 2 ? kLedsMissing : number == 1 ? kLedsLinks : kLedsDark;
     }
     return true;
 }

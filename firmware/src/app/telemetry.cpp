@@ -20,6 +20,9 @@ void write_hello(const Tile& tile, const Boot& boot, Sentence* sentence) {
     sentence->hex(boot.reset_cause, 2);
     sentence->hex(boot.firmware_id, 8);
     sentence->number(tile.settings().brightness);
+    if (tile.model().directions) {
+        sentence->number(tile.model().directions);
+    }
     sentence->end();
 }
 
@@ -29,6 +32,9 @@ void write_chip(const Tile& tile, const Boot& boot, Sentence* sentence) {
     for (uint8_t byte : boot.fuses) {
         sentence->hex(byte, 2);
     }
+    const Settings& board = tile.settings();
+    board.revision != 0 ? sentence->number(board.revision) : sentence->nothing();
+    board.revision != 0 ? sentence->number(board.serial) : sentence->nothing();
     sentence->end();
 }
 

@@ -35,6 +35,18 @@ Decision decide(const int16_t* scores, uint8_t classes) {
     return {best, static_cast<uint8_t>((least + (1 << (kMessageShift - 1))) >> kMessageShift)};
 }
 
+uint8_t missing_side(const int8_t* scores) {
+    uint8_t found = kSides;
+    int8_t most = kMissing;
+    for (uint8_t side = 0; side < kSides; ++side) {
+        if (scores[side] > most) {
+            most = scores[side];
+            found = side;
+        }
+    }
+    return found;
+}
+
 void Forward::begin(int8_t* inputs, int16_t* state) {
     const uint8_t count = network_.hidden1.inputs;
     inputs[count] = kEnd;

@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model D968; do not edit. Body f7fad3f2a0d11328
+// Rendered by `tilenca export` from model D968; do not edit. Body d1fdabea89a3dcff
 #include "model/model.h"
 
 namespace tilenca {
@@ -781,6 +781,7 @@ const Model kModel = {
         {kHidden2, kChannels, FlashView<uint8_t>(kLayer3), false, 0},
     },
     FlashView<Look>(kLooks),
+    kDirections,
 };
 
 } // namespace model

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.sides import SIDES
 from tilenca.base.stdio import warn
 from tilenca.commands.arguments import add_fleet_arguments
 from tilenca.fleet.boards import (
@@ -26,12 +27,13 @@ from tilenca.fleet.boards import (
 )
 from tilenca.fleet.discover import Learnt, learn
 from tilenca.fleet.identify import BOARD_S, Answer, ask_all
+from tilenca.fleet.link_health import WELL
 from tilenca.fleet.ports import natural_key
 from tilenca.fleet.side_hints import SUPPLY_REMEDY, line_hints
 from tilenca.fleet.tiles_file import DEFAULT, Place, read_tiles, tile_count, write_tiles
 from tilenca.fleet.tiles_update import update
 from tilenca.protocol.constants import LEAST_SUPPLY_MV
-from tilenca.protocol.sentences import BoardSentence, ChipSentence
+from tilenca.protocol.sentences import ChipSentence
 from tilenca.views.table import table
 
 MEGA_FUSES = 0xFF, 0xD8  # low: the resonator; high: the boot section of 8 KiB starts first
@@ -176,6 +178,7 @@ def as_json(board: Board, answer: Answer | None = None) -> dict[str, Any]:
         "firmware_id": f"{hello.firmware_id:08X}" if hello else None,
         "model_id": f"{hello.model_id:04X}" if hello else None,
         "fuses": _fuses(answer.chip) if answer and answer.chip else None,
+        "marking": answer.chip.marking if answer and answer.chip else None,
         "supply_mv": answer.board.supply_mv if answer and answer.board else None,
         "error": answer.problem or None if answer else None,
     }
@@ -187,7 +190,7 @@ def _row(board: Board, answer: Answer | None) -> list[str]:
     tile = board.tile or (hello.tile if hello else None) or None
     firmware = f"{hello.firmware_id:08X}" if hello else "-"
     facts = (
-        [port.about, answer.problem, *_board_facts(answer.board), *_chip_facts(answer.chip)]
+        [port.about, answer.problem, *_chip_facts(answer.chip), *_board_facts(answer)]
         if answer
         else [port.about]
     )
@@ -195,13 +198,19 @@ def _row(board: Board, answer: Answer | None) -> list[str]:
     return [port.name, _text(tile), _where(board.place), ids, board.name, firmware, about]
 
 
-def _board_facts(board: BoardSentence | None) -> list[str]:
-    """The supply, and lines at which something is wrong, each with what to do."""
-    if board is None:
+def _board_facts(answer: Answer) -> list[str]:
+    """The supply, and lines and links at which something is wrong now, each with what to do."""
+    if (board := answer.board) is None:
         return []
     low = f": {SUPPLY_REMEDY}" if board.supply_mv and board.supply_mv < LEAST_SUPPLY_MV else ""
     supply = [] if board.supply_mv is None else [f"{board.supply_mv / 1000:.1f} V{low}"]
-    return [*supply, *(f"side {side}: {hint.text}" for side, hint in line_hints(board, None).items())]
+    hints = {side: hint.text for side, hint in line_hints(board, answer.board_before).items()}
+    for side, health in answer.health.items():
+        if side not in hints and health.good is not None and health.good < WELL:
+            hints[side] = (
+                f"{health.good:.0%} of the frames arrive: the plug, or a resonator (docs/BOARD_TEST.md)"
+            )
+    return [*supply, *(f"side {side}: {hints[side]}" for side in SIDES if side in hints)]
 
 
 def _fuses(chip: ChipSentence) -> str:
@@ -209,10 +218,13 @@ def _fuses(chip: ChipSentence) -> str:
 
 
 def _chip_facts(chip: ChipSentence | None) -> list[str]:
-    """The fuses, if they are not a Mega's."""
-    if chip is None or ((chip.low, chip.high) == MEGA_FUSES and chip.extended in MEGA_EXTENDED_FUSES):
+    """The board's marking, and the fuses, if they are not a Mega's."""
+    if chip is None:
         return []
-    return [f"fuses {_fuses(chip)[:-3]}, and a Mega has FF D8 FD: set them with a programmer"]
+    marking = [] if chip.revision is None else [f"board revision {chip.revision}, serial {chip.serial}"]
+    if (chip.low, chip.high) == MEGA_FUSES and chip.extended in MEGA_EXTENDED_FUSES:
+        return marking
+    return [*marking, f"fuses {_fuses(chip)[:-3]}, and a Mega has FF D8 FD: set them with a programmer"]
 
 
 def _text(value: object) -> str:

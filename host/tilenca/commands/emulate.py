@@ -26,7 +26,7 @@ from tilenca.commands.emulate_watch import watch_all
 from tilenca.commands.origin import model_with_id, own_shapes, without_a_dash
 from tilenca.commands.own_firmware import image_of
 from tilenca.emulator.experiment import Emulation, EmulationSettings
-from tilenca.emulator.greeting import greeting, settings_of
+from tilenca.emulator.greeting import greeting, is_board_test, settings_of
 from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
 from tilenca.emulator.side_by_side import threads_of_each
@@ -121,7 +121,7 @@ def _prepare(args: argparse.Namespace) -> _Run:
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
-    told = _foreign(hello, known and known[0], task)
+    told = [_no_tile(image)] if hello is None else _foreign(hello, known and known[0], task)
     args.foreign = bool(told)
     for note in told:
         warn(f"tilenca: {note}")
@@ -146,10 +146,18 @@ def _prepare(args: argparse.Namespace) -> _Run:
     return _Run(task, shapes, lay_out, told)
 
 
-def _foreign(hello: HelloSentence | None, model: Model | None, task: Task) -> list[str]:
+def _no_tile(image: Path) -> str:
+    """What to say before the run of an image that does not greet."""
+    if is_board_test(image):
+        return (
+            "this image is the board test, which shows no label: give --serve DIR, and read its ports "
+            "(docs/BOARD_TEST.md)"
+        )
+    return f"{image} does not greet as a tile's firmware does: what it shows is not judged"
+
+
+def _foreign(hello: HelloSentence, model: Model | None, task: Task) -> list[str]:
     """What to say before the run where the firmware's model does not know a class of the file."""
-    if hello is None:
-        return []
     if model is None:
         fits = hello.classes in (len(task.labels), len({*task.labels, UNKNOWN}))
     else:

@@ -6,8 +6,8 @@ from pathlib import Path
 from tilenca.base.errors import UsageError
 from tilenca.base.shipped import model_folder
 from tilenca.commands.arguments import add_shapes_argument, count, number, seed, size, whole
-from tilenca.emulator.faults import KINDS
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.board_faults import ALL_KINDS
+from tilenca.emulator.board_faults import parse as parse_fault
 from tilenca.emulator.hardware import UNPOWERED
 from tilenca.protocol.constants import MAX_PERIOD_MS, MIN_PERIOD_MS
 
@@ -76,7 +76,7 @@ def add_emulate_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="SPEC",
         help="a fault with its place and time, such as loss=0.1 or cut@3-4:2-5; again for more. Kinds: "
-        f"{', '.join(KINDS)}",
+        f"{', '.join(ALL_KINDS)}",
     )
     add(
         "--threads",

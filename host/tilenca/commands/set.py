@@ -12,7 +12,7 @@ from tilenca.fleet.boards import Found, find_fleet, tell_contradiction, tile_num
 from tilenca.fleet.command import command_all
 from tilenca.fleet.identify import ask
 from tilenca.fleet.reader import PortReader
-from tilenca.protocol.commands import set_command
+from tilenca.protocol.commands import mark_command, set_command
 from tilenca.protocol.constants import PRESETS, SETTING_RANGES
 from tilenca.protocol.describe import whole_number
 from tilenca.protocol.sentences import HelloSentence
@@ -27,12 +27,17 @@ FIELDS = {"id": "tile", "period": "period_ms", "updates": "updates", "brightness
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
     ranges = "; ".join(f"{name} {low} to {high}" for name, (low, high) in SETTING_RANGES.items())
-    parser.add_argument("name", metavar="NAME", help=f"{', '.join(SETTING_RANGES)} or preset")
-    parser.add_argument("value", metavar="VALUE", help=f"{ranges}; preset {' or '.join(PRESETS)}")
+    parser.add_argument("name", metavar="NAME", help=f"{', '.join(SETTING_RANGES)}, preset or board")
+    parser.add_argument(
+        "value",
+        metavar="VALUE",
+        help=f"{ranges}; preset {' or '.join(PRESETS)}; board REVISION.SERIAL, of one tile, for good",
+    )
     add_fleet_arguments(parser)
     parser.add_argument(
         "--tile", action="append", metavar="N", help="only this tile, or a list like 3,7,9-12; repeatable"
     )
+    parser.add_argument("--replace", action="store_true", help="with board: replace another marking")
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
@@ -50,9 +55,7 @@ class SettingRow:
 def run(args: argparse.Namespace) -> int:
     """Sets it everywhere at once; see `tilenca set --help`."""
     try:
-        number = None if args.name == "preset" else whole_number(args.value)
-        value = args.value if number is None else number
-        order = set_command(args.name, value)
+        value, order = _order(args)
     except ValueError as error:
         raise UsageError(f"{error}; see tilenca set --help") from error
     wanted = set[int]().union(*map(tile_numbers, args.tile)) if args.tile else None
@@ -70,6 +73,8 @@ def run(args: argparse.Namespace) -> int:
         rows = _known(reader, rows, wanted)
         if args.name == "id" and value != 0:
             _check_id(value, rows, _others(found, asked, rows))
+        if args.name == "board" and len(rows) > 1:
+            raise UsageError(f"{len(rows)} boards would be the same; choose one with --tile or --port")
         _set(reader, rows, args.name, value, order)
     if args.name in ("period", "preset"):
         _compare_periods([asked.get(name) or SettingRow(name, None) for name in listed])
@@ -85,6 +90,24 @@ def run(args: argparse.Namespace) -> int:
     everything = [*rows.values(), *absent]
     _print(everything, args.json)
     return 0 if all(row.result == "set" for row in everything) else 1
+
+
+def _order(args: argparse.Namespace) -> tuple[int | str, bytes]:
+    """The value, and the command for it.
+
+    Raises:
+        ValueError: no tile takes it.
+    """
+    if args.replace and args.name != "board":
+        raise ValueError("--replace does nothing without board; leave it out")
+    if args.name == "board":
+        revision, serial = (whole_number(part) for part in (args.value.partition(".")[::2]))
+        if revision is None or serial is None:
+            raise ValueError(f"board '{args.value}': it is REVISION.SERIAL, such as 2.17")
+        return args.value, mark_command(revision, serial, args.replace)
+    number = None if args.name == "preset" else whole_number(args.value)
+    value = args.value if number is None else number
+    return value, set_command(args.name, value)
 
 
 def _others(found: Found, asked: dict[str, SettingRow], chosen: dict[str, SettingRow]) -> set[int | None]:
@@ -139,7 +162,7 @@ def _known(reader: PortReader, rows: dict[str, SettingRow], wanted: set[int] | N
 def _set(reader: PortReader, rows: dict[str, SettingRow], name: str, value: int | str, order: bytes) -> None:
     """Sets it in all tiles that answered, and asks each what is in force then."""
     speaking = {port: order for port, row in rows.items() if row.hello}
-    replies = command_all(reader, speaking, "SET")
+    replies = command_all(reader, speaking, "MARK" if name == "board" else "SET")
     done = [port for port, reply in replies.items() if not reply.problem]
     for port, reply in replies.items():
         rows[port].error = reply.problem or None

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from tilenca.base.errors import UsageError
+from tilenca.base.sides import SIDES
 from tilenca.base.stdio import warn
 from tilenca.model import cost
+from tilenca.model.directions import with_directions
 from tilenca.model.file import (
     DEFAULT_CHANNELS,
     Dimensions,
@@ -63,6 +65,13 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
     if args.iterations is not None:
         recipe = replace(recipe, iterations=args.iterations)
     initial = None if args.weights is None else load_model(args.weights)
+    if initial is not None and recipe.directions and not initial.dimensions.directions:
+        initial = with_directions(initial)
+    if initial is not None and initial.dimensions.directions and not recipe.directions:
+        raise UsageError(
+            f"{args.weights}: says where a tile is missing, and recipe {args.recipe} does not train that; "
+            "begin with another model, or train by --recipe damage"
+        )
     dimensions = _dimensions(args, recipe, initial)
     task, sizes = load_training_task(args.shapes, recipe.stretch, dimensions.max_classes)
     labels = labels_of(task, recipe, dimensions.max_classes)
@@ -81,6 +90,11 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
     return TrainingPlan(task, sizes, recipe, dimensions, seeds, runs, varies, initial)
 
 
+def usual_channels(recipe: Recipe) -> int:
+    """The channels of the state where none are given."""
+    return DEFAULT_CHANNELS + (len(SIDES) if recipe.directions else 0)
+
+
 def _dimensions(args: argparse.Namespace, recipe: Recipe, initial: Model | None) -> Dimensions:
     """The widths that the arguments, the initial model or the recipe say.
 
@@ -89,7 +103,8 @@ def _dimensions(args: argparse.Namespace, recipe: Recipe, initial: Model | None)
     """
     if initial is None:
         hidden = args.hidden or recipe.hidden
-        return Dimensions(args.state or DEFAULT_CHANNELS, hidden, hidden)
+        directions = len(SIDES) if recipe.directions else 0
+        return Dimensions(args.state or usual_channels(recipe), hidden, hidden, directions)
     theirs = initial.dimensions
     for option, width in (("state", theirs.channels), ("hidden", theirs.hidden1)):
         if (asked := getattr(args, option)) not in (None, width):

@@ -16,9 +16,9 @@ from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.train_cluster import train_on_cluster
-from tilenca.commands.train_plan import TrainingPlan
+from tilenca.commands.train_plan import TrainingPlan, usual_channels
 from tilenca.evaluation.suites import make_suite
-from tilenca.model.file import DEFAULT_CHANNELS, Model, checkpoints
+from tilenca.model.file import Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipes import aims_of, find_recipe
 from tilenca.training.sessions import noted
@@ -225,7 +225,7 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
         words += ["--hidden", str(args.hidden or recipe.hidden)]
     else:
         words += ["--weights", place(args.weights)]
-    for option, default in (("state", DEFAULT_CHANNELS), ("device", "cpu"), ("validation_runs", None)):
+    for option, default in (("state", usual_channels(recipe)), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)

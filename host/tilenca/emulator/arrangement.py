@@ -13,6 +13,7 @@ from tilenca.emulator.faults import FaultsMoment
 from tilenca.emulator.traffic import Traffic
 from tilenca.protocol.commands import set_command
 from tilenca.protocol.settings import settings_block
+from tilenca.protocol.stream_fields import MAX_PLACE
 
 # Row and column on the board; any whole numbers.
 Place: TypeAlias = tuple[int, int]
@@ -94,12 +95,9 @@ class Arrangement:
 
     def pull(self, tile: int) -> None:
         """Takes a tile away, with its cables."""
-        for link in [link for link in self._emulation.cables if tile in (link[0], link[2])]:
-            self._array.unlink(*link[:2])
-            self.traffic.forget(link)
-            self._emulation.cables.remove(link)
-            self._emulation.faults.cut -= {link[:2], link[2:]}
+        self._unplug([link for link in self._emulation.cables if tile in (link[0], link[2])])
         self._array[tile].powered = False
+        self._emulation.faults.lay_straight(tile, True)
         del self.places[tile]
 
     def move(self, tile: int, place: Place) -> None:
@@ -114,6 +112,22 @@ class Arrangement:
             self.pull(tile)
             self._array[tile].powered = True
             self._plug_in(tile, place)
+
+    def shift(self, tiles: Collection[int], rows: int, cols: int) -> None:
+        """Moves tiles together: they keep their power and the cables between them, and run on.
+
+        Raises:
+            UsageError: other tiles lie there, or the board ends before.
+        """
+        there = {tile: (self.places[tile][0] + rows, self.places[tile][1] + cols) for tile in tiles}
+        if any(self.tile_at(place) not in (None, *there) for place in there.values()):
+            raise UsageError("other tiles lie there; choose empty places")
+        if any(abs(number) > MAX_PLACE for place in there.values() for number in place):
+            raise UsageError(f"the board ends there; rows and columns are -{MAX_PLACE} to {MAX_PLACE}")
+        self._unplug([link for link in self._emulation.cables if (link[0] in there) != (link[2] in there)])
+        self.places.update(there)
+        for tile in sorted(there):
+            self._join(tile, there)
 
     def arrange(self, cells: Collection[Place]) -> None:
         """Makes another drawing: takes out what is too much, puts in what is missing; the rest runs on."""
@@ -130,6 +144,19 @@ class Arrangement:
         """Sends a tile a command over USB."""
         self._array[tile].write_serial(command)
 
+    def turn(self, tile: int, on: bool) -> None:
+        """Turns a tile by 90 degrees, or back; it runs on."""
+        self._emulation.faults.lay_straight(tile, not on)
+
+    def skew(self, tile: int, ppm: float) -> None:
+        """From now on a tile's clock is so much faster than it was made."""
+        self._emulation.faults.skew(tile, ppm)
+
+    def fault_of(self, tile: int) -> tuple[bool, float]:
+        """Whether a tile lies turned, and by how many ppm its clock is too fast."""
+        faults = self._emulation.faults
+        return tile in faults.turned, faults.skewed.get(tile, 0.0)
+
     # --- cables ---
 
     @property
@@ -145,9 +172,9 @@ class Arrangement:
             UsageError: there is none.
         """
         link = self.cable(tile, side)
-        self._emulation.faults.connect(link[:2], whole)
         if whole:
             self._emulation.faults.cut.discard(link[2:])  # a fault may have named its other end
+        self._emulation.faults.connect(link[:2], whole)
 
     def lose(self, share: float) -> None:
         """From now on so many of the bytes on all cables are lost, 0..1."""
@@ -183,11 +210,23 @@ class Arrangement:
         self._array.add_tile(ppm)
         return index
 
+    def _unplug(self, links: Collection[Link]) -> None:
+        for link in links:
+            self._array.unlink(*link[:2])
+            self.traffic.forget(link)
+            self._emulation.cables.remove(link)
+            self._emulation.faults.cut -= {link[:2], link[2:]}
+
     def _plug_in(self, tile: int, place: Place) -> None:
         self.places[tile] = place
+        self._join(tile)
+
+    def _join(self, tile: int, joined: Collection[int] = ()) -> None:
+        """Plugs in the cables to its neighbours, but to those that are joined with it already."""
+        row, col = self.places[tile]
         for side, (down, right) in enumerate(OFFSETS):
-            other = self.tile_at((place[0] + down, place[1] + right))
-            if other is None:
+            other = self.tile_at((row + down, col + right))
+            if other is None or other in joined:
                 continue
             link = (tile, side, other, opposite(side))
             if side not in (EAST, SOUTH):

@@ -11,8 +11,9 @@ from typing import Any
 
 from tilenca.base.errors import TilencaError
 from tilenca.emulator.array import Array
+from tilenca.emulator.board_faults import BoardFault, BoardFaults
 from tilenca.emulator.eeprom_files import load_eeprom
-from tilenca.emulator.faults import Faults, FaultSpec
+from tilenca.emulator.fault_spec import FaultSpec
 from tilenca.emulator.hardware import Hardware
 from tilenca.emulator.telemetry import heard_from
 from tilenca.emulator.tile import EmulatedTile
@@ -63,7 +64,7 @@ class EmulationSettings:
     seed: int = 0
     bootloader: Path | None = None
     unpowered: str = "low"
-    faults: tuple[FaultSpec, ...] = ()
+    faults: tuple[FaultSpec | BoardFault, ...] = ()
     threads: int = 1
     eeprom: Path | None = None
 
@@ -103,7 +104,7 @@ class Emulation:
             elf, count, links, self.ppm, self.switch_on_s, settings.bootloader, settings.threads,
             hardware=hardware,
         )  # fmt: skip
-        self.faults = Faults(self.array, links, settings.seed)
+        self.faults = BoardFaults(self.array, links, settings.seed)
         for spec in settings.faults:
             self.faults.add(spec)
         self.period_ms = settings.period_ms or (defaults.period_ms if defaults else None)

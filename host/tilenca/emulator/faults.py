@@ -1,110 +1,20 @@
-"""`tilenca emulate --fault SPEC`: faults of tiles and cables, and their times.
-
-KIND[=VALUE][@WHERE][:FROM[-TO]], times in seconds:
-
-    loss=0.1            a tenth of the bytes on all cables is lost
-    flip=0.001@3E       of the bits that leave tile 3 to the east, one in a thousand is inverted
-    delay=5@3-4:2-3     the cable between tiles 3 and 4 takes 5 ms more, from 2 s to 3 s
-    cut@3-4:2-3         that cable is cut at 2 s and mended at 3 s
-    off@7:2-3           tile 7 has no power from 2 s to 3 s; without the end, it stays off
-    remove@7:2          tile 7 is taken away at 2 s
-    reset@7:2           tile 7 is reset at 2 s
-    drift=20@7          tile 7's clock error grows by 20 ppm a second; without a tile, each by up to so much
-    adc=2               conversions are off by 2, root mean square
-    supply=4.3@7:2-3    tile 7 has 4.3 V from 2 s to 3 s, and 5 V otherwise
-"""
+"""The faults of an array, each at its time; see `fault_spec` for how they are written."""
 
 import random
-import re
 from bisect import insort
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from math import inf
 
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
 from tilenca.emulator.array import Array, Link, LinkFault
+from tilenca.emulator.fault_spec import LINK_KINDS, USUAL_V, FaultSpec
 
-EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2"
-LINK_KINDS = {"loss": 1.0, "flip": 1.0, "delay": 1000.0}  # with the most each can be
-TILE_KINDS = {"drift": 10_000.0, "adc": 100.0, "supply": 5.5}
-LEAST_V, USUAL_V = 1.8, 5.0
-MOMENT_KINDS = ("cut", "off", "remove", "reset")
-KINDS = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
-SHAPE = re.compile(r"([a-z]+)(?:=([^@:]+))?(?:@([^:]+))?(?::([^-]+)(?:-(.+))?)?")
 # One direction: the tile, counted from 0, and the side that it leaves.
 End = tuple[int, int]
-
-
-@dataclass(frozen=True)
-class FaultSpec:
-    """One parsed `--fault`; see the module.
-
-    Attributes:
-        text: as it was given.
-        kind: one of the words above.
-        value: its number; 0 where it takes none.
-        where: as given; "" for everywhere.
-        from_s: when it begins.
-        to_s: when it ends; None: never.
-    """
-
-    text: str
-    kind: str
-    value: float
-    where: str
-    from_s: float
-    to_s: float | None
-
-    def refuse(self, fact: str) -> UsageError:
-        """The error for this one."""
-        return _complaint(self.text, fact)
-
-
-def _complaint(text: str, fact: str) -> UsageError:
-    return UsageError(f"--fault '{text}': {fact}; for example {EXAMPLE}")
-
-
-def _number(text: str, part: str, fact: str) -> float:
-    try:
-        value = float(part)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < float("inf"):
-        raise _complaint(text, f"'{part}' is no {fact}")
-    return value
-
-
-def parse(text: str) -> FaultSpec:
-    """Parses a `--fault`.
-
-    Raises:
-        UsageError: it is not valid; the message says why.
-    """
-    match = SHAPE.fullmatch(text)
-    kinds = (*LINK_KINDS, *MOMENT_KINDS, *TILE_KINDS)
-    word = re.match("[a-z]*", text)
-    if word is None or word[0] not in kinds:
-        raise _complaint(text, f"it begins with none of {', '.join(kinds)}")
-    if match is None:
-        raise _complaint(text, f"after {word[0]} comes [=VALUE][@WHERE][:FROM[-TO]], times in seconds from 0")
-    kind, value_text, where, from_text, to_text = match.groups()
-    most = (LINK_KINDS | TILE_KINDS).get(kind)
-    if (most is None) != (value_text is None):
-        raise _complaint(text, f"{kind} takes {'no' if most is None else 'a'} number")
-    value = 0.0 if value_text is None else _number(text, value_text, "number")
-    if most is not None and value > most:
-        raise _complaint(text, f"{kind} is 0 to {most:g}")
-    if kind == "supply" and value < LEAST_V:
-        raise _complaint(text, f"supply is {LEAST_V:g} to {most:g} V")
-    from_s = 0.0 if from_text is None else _number(text, from_text, "time in seconds")
-    to_s = None if to_text is None else _number(text, to_text, "time in seconds")
-    if to_s is not None and (to_s <= from_s or kind in ("remove", "reset", "adc", "drift")):
-        raise _complaint(text, "it ends before it begins" if to_s <= from_s else f"{kind} has no end")
-    if kind in MOMENT_KINDS and where is None:
-        raise _complaint(text, f"{kind} needs a place")
-    return FaultSpec(text, kind, value, where or "", from_s, to_s)
 
 
 @dataclass(frozen=True)
@@ -116,6 +26,8 @@ class FaultsMoment:
     everywhere: dict[str, float]
     due: list[tuple[float, int, Callable[[], None]]]
     spoilt: dict[End, dict[str, float]]
+    turned: set[int]
+    skewed: dict[int, float]
 
 
 @dataclass
@@ -126,6 +38,8 @@ class Faults:
         restarted_s: the time of the last reset or switch-on of each tile that had one.
         cut: the ends at which cables are cut now.
         everywhere: the LINK_KINDS that all cables have now.
+        turned: the tiles that lie turned by 90 degrees now.
+        skewed: by how much the clocks of tiles are too fast now, in ppm; others are as they were made.
     """
 
     array: Array
@@ -134,6 +48,8 @@ class Faults:
     restarted_s: dict[int, float] = field(default_factory=dict)
     cut: set[End] = field(default_factory=set)
     everywhere: dict[str, float] = field(default_factory=dict)
+    turned: set[int] = field(default_factory=set)
+    skewed: dict[int, float] = field(default_factory=dict)
     _due: list[tuple[float, int, Callable[[], None]]] = field(default_factory=list)
     _spoilt: dict[End, dict[str, float]] = field(default_factory=dict)
 
@@ -141,7 +57,13 @@ class Faults:
         """A copy of all that is planned and stands."""
         spoilt = {end: dict(kinds) for end, kinds in self._spoilt.items()}
         return FaultsMoment(
-            dict(self.restarted_s), set(self.cut), dict(self.everywhere), list(self._due), spoilt
+            dict(self.restarted_s),
+            set(self.cut),
+            dict(self.everywhere),
+            list(self._due),
+            spoilt,
+            set(self.turned),
+            dict(self.skewed),
         )
 
     def restore(self, moment: FaultsMoment) -> None:
@@ -149,6 +71,7 @@ class Faults:
         self.restarted_s, self.cut = dict(moment.restarted_s), set(moment.cut)
         self.everywhere, self._due = dict(moment.everywhere), list(moment.due)
         self._spoilt = {end: dict(kinds) for end, kinds in moment.spoilt.items()}
+        self.turned, self.skewed = set(moment.turned), dict(moment.skewed)
 
     def add(self, spec: FaultSpec) -> None:
         """Plans a fault.
@@ -173,11 +96,13 @@ class Faults:
         elif spec.kind == "off":
             tiles = self._tiles(spec)
             self._plan_switch(spec, [partial(self._power, tile) for tile in tiles])
+        elif spec.kind == "turn":
+            self._plan_switch(spec, [partial(self.lay_straight, tile) for tile in self._tiles(spec)])
         else:
             for tile in self._tiles(spec):
                 self._plan(spec.from_s, self._action(spec, tile))
-                if spec.to_s is not None:  # of these, only a supply has an end
-                    self._plan(spec.to_s, partial(self.array[tile].set_supply, USUAL_V))
+                if spec.to_s is not None:
+                    self._plan(spec.to_s, partial(self._end, spec.kind, tile))
 
     def _plan(self, time_s: float, action: Callable[[], None]) -> None:
         insort(self._due, (time_s, len(self._due), action), key=lambda due: due[:2])
@@ -203,8 +128,17 @@ class Faults:
             return lambda: self.array[tile].set_supply(spec.value)
         rate = spec.value
         if not spec.where:
-            rate *= random.Random(f"{self.seed} drift {tile}").uniform(-1, 1)
+            rate *= random.Random(f"{self.seed} {spec.kind} {tile}").uniform(-1, 1)
+        if spec.kind == "skew":
+            return partial(self.skew, tile, rate)
         return lambda: self.array[tile].set_drift(rate)
+
+    def _end(self, kind: str, tile: int) -> None:
+        """Ends a fault of TILE_KINDS that has an end."""
+        if kind == "skew":
+            self.skew(tile, 0.0)
+        else:
+            self.array[tile].set_supply(USUAL_V)
 
     def run(self, seconds: float) -> list[int]:
         """Runs the array for a while, and injects the faults that fall due.
@@ -225,6 +159,11 @@ class Faults:
         if end_s > self.array.time_s:
             self.array.run(end_s - self.array.time_s)
         return [tile for tile, time_s in self.restarted_s.items() if time_s >= start_s]
+
+    @property
+    def next_s(self) -> float:
+        """The time of the next one that is planned."""
+        return self._due[0][0] if self._due else inf
 
     # --- what they do ---
 
@@ -251,12 +190,32 @@ class Faults:
             self._spoilt.pop(end, None)
         for kind, value in self.everywhere.items():
             self.spoil(ends, kind, value)
+        self._join(link)
 
     def connect(self, end: End, on: bool) -> None:
         """Cuts the cable at an end, or mends it."""
-        with suppress(UsageError):  # the cable has gone with its tile
-            (self.array.mend if on else self.array.cut)(*end)
-            (self.cut.discard if on else self.cut.add)(end)
+        for link in self.links:
+            if end in (link[:2], link[2:]):
+                (self.cut.discard if on else self.cut.add)(end)
+                self._join(link)
+
+    def lay_straight(self, tile: int, on: bool) -> None:
+        """Lays a tile straight, or turns it by 90 degrees."""
+        (self.turned.discard if on else self.turned.add)(tile)
+        for link in self.links:
+            if tile in (link[0], link[2]):
+                self._join(link)
+
+    def skew(self, tile: int, ppm: float) -> None:
+        """From now on a tile's clock is so much faster than it was made; 0: as it was made."""
+        self.array[tile].set_skew(ppm)
+        self.skewed[tile] = ppm
+
+    def _join(self, link: Link) -> None:
+        """Lets a cable carry bytes, unless it is cut or one of its tiles is turned."""
+        is_whole = self.cut.isdisjoint((link[:2], link[2:])) and self.turned.isdisjoint((link[0], link[2]))
+        with suppress(UsageError):  # it has gone with its tile
+            (self.array.mend if is_whole else self.array.cut)(*link[:2])
 
     def plug(self, tile: int, on: bool) -> None:
         """Takes a tile out, with its cables and its power, or plugs it in again."""

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from tilenca.base.errors import image_error
 from tilenca.emulator.array import Array
+from tilenca.protocol.board_test import board_test_text
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.sentences import HelloSentence, OtherVersionSentence
 from tilenca.protocol.settings import Settings
@@ -30,6 +31,13 @@ def greeting(elf: Path) -> HelloSentence | None:
                 if isinstance(sentence, HelloSentence):
                     return sentence
     return None
+
+
+def is_board_test(elf: Path) -> bool:
+    """Whether an image that does not greet is that of docs/BOARD_TEST.md, by what it says."""
+    with Array(elf) as array:
+        array.run(HELLO_S)
+        return any(board_test_text(line) for line in array[0].read_serial().splitlines())
 
 
 def settings_of(hello: HelloSentence | None) -> Settings | None:

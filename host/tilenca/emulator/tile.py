@@ -116,6 +116,10 @@ class EmulatedTile:
         """From now on the clock error grows by so many ppm in each second, in steps of 1/15 s."""
         self._call("tile_set_drift", ppm_per_s)
 
+    def set_skew(self, ppm: float) -> None:
+        """From now on the clock is so many ppm faster than it would be, at most 100,000."""
+        self._call("tile_set_skew", ppm)
+
     def set_fuses(self, low: int = 0xFF, high: int = 0xD9, extended: int = 0xFD, lock: int = 0xFF) -> None:
         """Sets fuse and lock bytes as a programmer does; the chip starts anew."""
         self._call("tile_set_fuses", low, high, extended, lock)
@@ -137,11 +141,7 @@ class EmulatedTile:
         return received
 
     def read_eeprom(self, address: int = 0, count: int = EEPROM_BYTES) -> bytes:
-        """Bytes of the EEPROM.
-
-        Raises:
-            UsageError: the range ends beyond the memory (this holds for all four readers and writers).
-        """
+        """Bytes of the EEPROM. A range that ends beyond a memory is refused, here as below."""
         return self._read("tile_read_eeprom", address, count)
 
     def write_eeprom(self, address: int, data: bytes) -> None:

@@ -8,6 +8,10 @@ from tilenca.model.file import Model
 # Recipes have a library since forms are held out.
 SPLIT_BY_FORM = "New pairs and drawings of no class had no form in common with those that did."
 CHOSEN = "Held-out sizes helped to choose when to stop, with other runs than these. "
+ABOUT_DIRECTIONS = (
+    " Tiles of this model also say on which side one is missing. In rows about tiles beside a gap, and about "
+    "the others, a run is a tile; the intervals take tiles as independent, and those of a body are not."
+)
 NOT_SPLIT = (
     "This model was trained before drawings were held out by form: of the new pairs and the drawings of no "
     "class some may have been trained, at this size or another."
@@ -64,6 +68,7 @@ def render_card(model: Model, metrics: dict[str, Any]) -> str:
         "for these drawings. A target of 1.000 holds where the share rounds to 1.000. "
         + (CHOSEN if metadata["recipe"]["check_every"] else "")
         + (SPLIT_BY_FORM if "library" in metadata["recipe"] else NOT_SPLIT)
+        + (ABOUT_DIRECTIONS if size.directions else "")
         + " To measure it again:",
         "",
         f"    tilenca evaluate --suite --model DIR --shapes {' '.join(metadata['shapes'])} "

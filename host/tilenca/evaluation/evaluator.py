@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tilenca.evaluation.best_guess import best_share, guessed_share
 from tilenca.evaluation.cases import VERY_LARGE_STEPS, Case
 from tilenca.evaluation.metrics import TARGETS, Measurement, Runs, Target, measure, target_of
+from tilenca.evaluation.missing import missing_rows
 from tilenca.evaluation.suites import Suite
 from tilenca.shapes.file import UNKNOWN
 from tilenca.simulator.conditions import Conditions, Fault, FaultKind, ScheduleKind
@@ -61,7 +62,7 @@ class Evaluator:
     def short_rows(self) -> Iterator[Measurement]:
         """The measurements during training: the clocks only, and nothing that takes long."""
         yield from self.agreement({"clock": SCHEDULES["clock"]})
-        for part in (self.varied, self.sizes, self.disturbed, self.unknown, self.agreeing):
+        for part in (self.varied, self.sizes, self.disturbed, self.missing, self.unknown, self.agreeing):
             yield from part()
         yield from self.changes(one_by_one=False)
         yield from self.longevity()
@@ -72,6 +73,7 @@ class Evaluator:
         yield from self.varied()
         yield from self.sizes()
         yield from self.disturbed()
+        yield from self.missing()
         yield from self.unknown()
         yield from self.agreeing()
         yield from self.changes(one_by_one=self.suite.slow_changes)
@@ -155,6 +157,13 @@ class Evaluator:
             target = Target(round(best - BELOW_BEST, 5)) if case.aimed else None
             row = measure("dead", case.name, runs, case.steps, target)
             yield replace(row, best=best)
+
+    def missing(self) -> Iterator[Measurement]:
+        """Where tiles say that one is missing."""
+        for asked in self.suite.missing:
+            if any(self._wanted(name) for name in asked.rows.values()):
+                rows = missing_rows(self.engine, asked, self.runs, self._chance)
+                yield from (row for row in rows if self._wanted(row.name))
 
     def agreeing(self) -> Iterator[Measurement]:
         """Any drawing: a run is right if all tiles show one answer, or for a class that one or the dash."""

@@ -14,11 +14,13 @@ import numpy as np
 from tilenca.base.errors import UsageError
 from tilenca.evaluation.bodies import agreeing_cases, dead_cases
 from tilenca.evaluation.cases import LARGE_STEPS, MOST_STEPS, SHORT_STEPS, VERY_LARGE_STEPS, Case, steps_for
+from tilenca.evaluation.missing import MissingCase, missing_cases
 from tilenca.model.file import Model
 from tilenca.shapes import edits
 from tilenca.shapes.batch import Drawings, load_drawings
 from tilenca.shapes.derive import at_size, at_sizes, damaged, draw_unknown, known_of
 from tilenca.shapes.file import UNKNOWN, Shape
+from tilenca.shapes.gaps import Gaps
 from tilenca.shapes.likeness import index_of
 from tilenca.shapes.sizes import Size, Sizes, size_name
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
@@ -48,6 +50,7 @@ class Suite:
         varied: variants of held-out forms; None: the classes are just their drawings.
         dead: the drawings at a larger size, with shares of dead tiles.
         agreeing: any connected drawings, whose tiles must agree on one answer.
+        missing: drawings whose tiles are asked where one is missing; empty where the model does not say it.
         slow_changes: whether to change drawings tile by tile, too, which takes long where they are large.
     """
 
@@ -59,6 +62,7 @@ class Suite:
     varied: Case | None = None
     dead: tuple[Case, ...] = ()
     agreeing: tuple[Case, ...] = ()
+    missing: tuple[MissingCase, ...] = ()
     slow_changes: bool = True
 
 
@@ -72,12 +76,14 @@ class Aims:
         unknown: whether tiles show a dash on drawings of no class.
         varied: whether classes are what their drawings may become. Then a drawing of no class must not be
             like one of them; else it only must not be one of them.
+        directions: whether tiles say where one is missing.
     """
 
     stretch: float = 1.0
     damaged: bool = False
     unknown: bool = False
     varied: bool = False
+    directions: bool = False
 
 
 def recorded_aims(model: Model) -> Aims:
@@ -93,7 +99,7 @@ def recorded_aims(model: Model) -> Aims:
     )
     if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
         raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
-    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0)
+    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0, model.dimensions.directions > 0)
 
 
 def make_suite(
@@ -125,6 +131,7 @@ def make_suite(
         varied_case(task, aims, seed, split),
         () if shortened else tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
         tuple(agreeing_cases(task, first, aimed, seed)),
+        tuple(_missing_cases(task, first, aimed, split)) if aims.directions else (),
         slow_changes=not shortened,
     )
 
@@ -211,11 +218,21 @@ def _larger(task: Drawings, first: Sequence[Shape], sizes: Sizes) -> Iterable[Ca
         yield Case(kind, size_name(size), task.of(at_size(first, size)), steps_for(size))
 
 
+def _damaged_sizes(task: Drawings, aimed: Sizes) -> tuple[Size | None, ...]:
+    return None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)
+
+
+def _missing_cases(task: Drawings, first: Sequence[Shape], aimed: Sizes, split: str) -> Iterable[MissingCase]:
+    """What tiles say is missing, at the sizes of `_damaged_cases`."""
+    gaps = Gaps(chain(task.shapes, *at_sizes(first, (*aimed.trained, *aimed.more))))
+    return missing_cases(task, first, gaps, _damaged_sizes(task, aimed), split)
+
+
 def _damaged_cases(
     task: Drawings, first: Sequence[Shape], aimed: Sizes, aims: Aims, split: str
 ) -> Iterable[Case]:
     """One tile missing, at the drawn size and at others: pairs that training may use, and new ones."""
-    for size in (None, *(size for size in DAMAGED_SIZES if size in aimed.trained and size != task.largest)):
+    for size in _damaged_sizes(task, aimed):
         shapes = first if size is None else at_size(first, size)
         steps = SHORT_STEPS if size is None else steps_for(size)
         known = known_of([*task.shapes, *shapes])

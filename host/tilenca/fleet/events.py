@@ -13,6 +13,7 @@ from tilenca.protocol.describe import printable, words
 from tilenca.protocol.sentences import (
     AckSentence,
     BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -96,6 +97,8 @@ class Reporter:
                 return self._version_news(event.port, other)
             case BoardSentence() as board:
                 return self._line_news(event.port, board, view)
+            case ChipSentence() as chip:
+                return [] if chip.revision is None else [(words(chip), False)]
             case ErrorSentence(_, _, "SUPPLY", text):
                 return [(f"SUPPLY {text}: {SUPPLY_REMEDY}", True)]
             case ErrorSentence() | NakSentence() as complaint:

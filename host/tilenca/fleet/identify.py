@@ -2,13 +2,20 @@
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
+from tilenca.fleet.link_health import LinkHealth
 from tilenca.fleet.reader import PortReader
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.commands import ask_command, chip_command
-from tilenca.protocol.sentences import BoardSentence, ChipSentence, HelloSentence, OtherVersionSentence
+from tilenca.protocol.sentences import (
+    BoardSentence,
+    ChipSentence,
+    HelloSentence,
+    LinkSentence,
+    OtherVersionSentence,
+)
 
 # After a reset a tile greets by itself as soon as its bootloader stops waiting. Until then the bootloader
 # takes any byte for the beginning of a command and waits for more. So a question goes only to a tile that has
@@ -20,20 +27,29 @@ STALE_S = 0.3
 AGAIN_S = 1.0
 PATIENCE_S = 7.0
 TICK_S = 0.05
-# A tile tells what it measures every second; one of an older firmware never does.
-BOARD_S = 1.3
+# A tile tells what it measures every second; one of an older firmware never does. Two reports say what is
+# wrong now: counters since its start hide a fault that began late, and remember one that is over.
+BOARD_S = 2.3
 
 SILENT = "says nothing"
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A tile's greeting, or the `problem` that prevented one; `board` and `chip` if awaited."""
+    """A tile's greeting, or the `problem` that prevented one.
+
+    Attributes:
+        board: what it measures, if awaited, and `board_before` a second earlier.
+        chip: its fuses and its board's marking, if awaited.
+        health: of each side's link meanwhile, by letter.
+    """
 
     hello: HelloSentence | None = None
     problem: str = ""
     board: BoardSentence | None = None
     chip: ChipSentence | None = None
+    board_before: BoardSentence | None = None
+    health: dict[str, LinkHealth] = field(default_factory=dict)
 
     @property
     def firmware_id(self) -> int | None:
@@ -76,7 +92,11 @@ class _Asked:
                 self.wait_s = now_s + self._board_s
                 self.asks_chip = self._board_s > 0
         elif isinstance(event.sentence, BoardSentence) and self.answer and self.answer.hello:
-            self.answer, self.wait_s = replace(self.answer, board=event.sentence), now_s
+            before = self.answer.board
+            self.answer = replace(self.answer, board=event.sentence, board_before=before)
+            self.wait_s = now_s if before else self.wait_s
+        elif isinstance(event.sentence, LinkSentence) and self.answer:
+            self.answer.health.setdefault(event.sentence.side, LinkHealth()).take(event.sentence)
         elif isinstance(event.sentence, ChipSentence) and self.answer:
             self.answer = replace(self.answer, chip=event.sentence)
         elif isinstance(event.sentence, OtherVersionSentence):

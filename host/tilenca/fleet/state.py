@@ -7,6 +7,7 @@ from tilenca.fleet.link_health import LinkHealth
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import (
     BoardSentence,
+    ChipSentence,
     ErrorSentence,
     HelloSentence,
     LinkSentence,
@@ -66,6 +67,7 @@ class TileView:
         health: the recent quality of each side's link, by letter.
         time: its last report of its time and memory.
         board: what it measures on its board, and `board_before` the report before that, since its HELLO.
+        chip: its fuses, and its board's marking.
         error: the last error that it reported since its HELLO.
         other_version: its protocol version, if it is not ours.
         board_test: whether its last line was the board test's.
@@ -86,6 +88,7 @@ class TileView:
     time: TimeSentence | None = None
     board: BoardSentence | None = None
     board_before: BoardSentence | None = None
+    chip: ChipSentence | None = None
     error: ErrorSentence | None = None
     other_version: int | None = None
     tile_id: int | None = None
@@ -129,6 +132,8 @@ class TileView:
                 self.time = sentence
             case BoardSentence():
                 self.board_before, self.board = self.board, sentence
+            case ChipSentence():
+                self.chip = sentence
             case ErrorSentence():
                 self.error = sentence
             case OtherVersionSentence():

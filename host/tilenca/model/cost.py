@@ -233,9 +233,10 @@ def check(size: Dimensions, classes: int) -> Fit:
         BuildError: too wide, or too large for flash.
     """
     if not 1 <= classes <= size.max_classes:
+        taken = "one is the seed's" + (" and 4 are the directions'" if size.directions else "")
         raise UsageError(
-            f"{classes} classes need a state of at least {classes + 1} channels, one is the seed's; this one "
-            f"has {size.channels}, give a wider --state"
+            f"{classes} classes need a state of at least {classes + 1 + size.directions} channels, {taken}; "
+            f"this one has {size.channels}, give a wider --state"
         )
     if size.channels > MAX_CHANNELS or max(size.hidden1, size.hidden2) > MAX_WIDTH:
         raise BuildError(

@@ -8,7 +8,7 @@ import json
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +17,15 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import UsageError
 from tilenca.base.shipped import model_names
+from tilenca.base.sides import SIDES
 from tilenca.model import format_1
 from tilenca.protocol.checksums import crc16
 from tilenca.protocol.constants import MAX_CHANNELS  # 5 * channels fit the firmware's uint8_t
 from tilenca.shapes.glyphs import GLYPHS
 
 FORMAT = 2
-READABLE = (1, FORMAT)
+FORMAT_WITH_DIRECTIONS = 3  # older readers would take such a model for one without
+READABLE = (1, FORMAT, FORMAT_WITH_DIRECTIONS)
 ID_VERSION = 1  # of the bytes that the model id is computed from
 NEIGHBOURHOOD = 5  # von Neumann's: own state, then N, E, S, W
 # For each array of weights: how many steps 1.0 has in the integer tile, and its largest value there.
@@ -50,11 +52,19 @@ DAMAGED = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.Ba
 
 @dataclass(frozen=True)
 class Dimensions:
-    """The network's widths: 5 * channels -> hidden1 -> hidden2 -> channels; by default the digits'."""
+    """The network's widths: 5 * channels -> hidden1 -> hidden2 -> channels; by default the digits'.
+
+    Attributes:
+        channels: of the state; the last ones are the classes' scores.
+        hidden1, hidden2: of the hidden layers.
+        directions: 4: the channels before the classes' scores say where a tile is missing, N, E, S, W; 0: the
+            model does not say it.
+    """
 
     channels: int = DEFAULT_CHANNELS
     hidden1: int = DEFAULT_HIDDEN
     hidden2: int = DEFAULT_HIDDEN
+    directions: int = 0
 
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of every weight array, by name, in the order they are stored and hashed."""
@@ -69,8 +79,12 @@ class Dimensions:
 
     @property
     def max_classes(self) -> int:
-        """Classes that fit: one channel each, and channel 0 is the seed's."""
-        return self.channels - 1
+        """Classes that fit: one channel each; channel 0 is the seed's, and directions have theirs."""
+        return self.channels - 1 - self.directions
+
+    def as_json(self) -> dict[str, int]:
+        """Plain values; no directions where there are none, as in models of before."""
+        return {name: width for name, width in asdict(self).items() if name != "directions" or width}
 
 
 @dataclass(frozen=True)
@@ -95,9 +109,9 @@ class Model:
     def model_id(self) -> int:
         """16-bit id of dimensions, labels and integer weights: equal networks have equal ids."""
         size = self.dimensions
-        head = bytes([ID_VERSION, size.channels, size.hidden1, size.hidden2]) + "".join(self.labels).encode(
-            "ascii"
-        )
+        widths = bytes([ID_VERSION, size.channels, size.hidden1, size.hidden2])
+        directions = bytes([size.directions]) if size.directions else b""  # no label has this character
+        head = widths + directions + "".join(self.labels).encode("ascii")
         return crc16(head + b"".join(self.integer[name].tobytes() for name in size.shapes()))
 
     def save(self, directory: Path) -> None:
@@ -107,10 +121,10 @@ class Model:
         arrays |= {f"int_{name}": self.integer[name] for name in self.dimensions.shapes()}
         np.savez(directory / "weights.npz", **arrays)  # type: ignore[arg-type]
         about = {
-            "format": FORMAT,
+            "format": FORMAT_WITH_DIRECTIONS if self.dimensions.directions else FORMAT,
             "model_id": f"{self.model_id:04X}",
             "labels": list(self.labels),
-            **asdict(self.dimensions),
+            **self.dimensions.as_json(),
             "metadata": dict(self.metadata),
         }
         (directory / "model.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
@@ -138,7 +152,9 @@ def load_model(directory: Path) -> Model:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
     found = about.get("format") if isinstance(about, dict) else None
     if found not in READABLE:
-        raise UsageError(f"{about_path}: model format {found!r}, this tilenca reads {FORMAT}; train again")
+        raise UsageError(
+            f"{about_path}: model format {found!r}, this tilenca reads {READABLE[-1]}; train again"
+        )
     dimensions, labels = _description(about_path, about)
     model = Model(labels, dimensions, *_weights(weights_path, dimensions), _metadata(about_path, about))
     if about.get("model_id") != f"{model.model_id:04X}":
@@ -159,7 +175,10 @@ def _description(path: Path, about: dict[str, Any]) -> tuple[Dimensions, tuple[s
             f"{path}: channels, hidden1, hidden2 are {widths}; "
             f"the most are {MAX_CHANNELS}, {MAX_WIDTH} and {MAX_WIDTH}"
         )
-    dimensions = Dimensions(*widths)
+    directions = about.get("directions", 0)
+    if type(directions) is not int or directions not in (0, len(SIDES)) or widths[0] <= directions:
+        raise UsageError(f"{path}: directions are {directions!r}, they must be {len(SIDES)} or none")
+    dimensions = replace(Dimensions(*widths), directions=directions)
     labels = about.get("labels")
     if not (isinstance(labels, list) and labels and all(isinstance(x, str) and x in GLYPHS for x in labels)):
         raise UsageError(f"{path}: labels must be a list of characters that a 7-segment digit can show")

@@ -7,18 +7,18 @@ from math import floor
 from pathlib import Path
 
 from tilenca.base.errors import TilencaError, UsageError
-from tilenca.base.sides import SIDES
 from tilenca.emulator.arrangement import Arrangement, BoardMoment, Place
 from tilenca.emulator.experiment import Emulation, EmulationSettings
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.emulator.history import QUANTUM_S
-from tilenca.emulator.types import port_name
+from tilenca.page.by_hand import do_by_hand, tile_of
 from tilenca.page.offer import Drawing
 from tilenca.page.pace import Pace
+from tilenca.page.stepper import Stepper
 from tilenca.page.teller import VOICE_BYTES, Said, Teller
 from tilenca.page.timeline import Timeline
 from tilenca.protocol import stream_commands as commands
-from tilenca.protocol.commands import blink_command, restart_command, set_command
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.settings import Settings
 from tilenca.protocol.stream import (
     StreamEvent,
@@ -36,6 +36,8 @@ from tilenca.shapes.glyphs import looks_of
 
 # Up to this speed there is time to look at single frames on the cables.
 FRAMES_SPEED = 0.3
+# An instruction after which a tile sleeps ends with its waking, which no planned fault may overtake.
+LONGEST_STEP_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,8 @@ class EmulatedSource:
                     self._pace.set(self._pace.speed, paused=True)
             case commands.Seek(seconds):
                 self._seek(seconds)
+            case commands.Instruct(port, count):
+                self._instruct(port, count)
             case commands.Seen():
                 raise UsageError("seen: the server takes it itself")
             case _:
@@ -112,64 +116,23 @@ class EmulatedSource:
         if self._emulation is not None:
             self._events += self._teller.places()
 
-    def _lay_hands_on(self, command: commands.Hand) -> None:
+    def _lay_hands_on(self, command: hands.Hand) -> None:
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
-        self._do(command)
+        self._release()
+        do_by_hand(self._board, self._array, command)
         self._timeline.note(self._array.time_s, command)
         self._keep()
         self._tell_pace()  # another future begins
         self._events.append(deed_event(self._array.time_s, commands.told(command)))
 
-    def _do(self, command: commands.Hand) -> None:
-        """What a hand does, now or once more in a past that is run again."""
-        board = self._board
-        match command:
-            case commands.Put(row, col):
-                self._check_room(1)
-                board.put((row, col))
-            case commands.Pull(port):
-                board.pull(self._tile(port))
-            case commands.Move(port, row, col):
-                board.move(self._tile(port), (row, col))
-            case commands.Arrange(cells):
-                board.arrange(cells)
-            case commands.Cut(port, side, on):
-                board.connect(self._tile(port), SIDES.index(side), not on)
-            case commands.Power(port, on):
-                self._array[self._tile(port)].powered = on
-            case commands.Freeze(port, on):
-                board.freeze(self._tile(port), on)
-            case commands.Reset(port):
-                self._array[self._tile(port)].reset()
-            case commands.Noise(loss):
-                board.lose(loss)
-            case commands.Blink(port, seconds):
-                board.tell(self._tile(port), blink_command(seconds))
-            case commands.Restart(port):
-                board.tell(self._tile(port), restart_command())
-            case commands.Set(name, value, port):
-                for tile in sorted(board.places) if port is None else [self._tile(port)]:
-                    board.tell(tile, set_command(name, value))
-
     def _do_planned(self, planned: commands.Deed) -> None:
         """What a hand does at its time; what cannot be done is told, and forgotten."""
         try:
-            self._do(planned[1])
+            do_by_hand(self._board, self._array, planned[1])
         except UsageError as error:
             self._timeline.forget(planned)
             self._events.append(refused_event(0.0, str(error)))
-
-    def _check_room(self, more: int) -> None:
-        if len(self._board.places) + more > MOST_TILES:
-            raise UsageError(f"the board has {MOST_TILES} tiles, which is all; take one out first")
-
-    def _tile(self, port: str) -> int:
-        """The tile of that port, which lies on the board."""
-        for tile in self._board.places:
-            if port_name(tile) == port:
-                return tile
-        raise UsageError(f"no tile {port} lies on the board")
 
     def _open(self, wanted: commands.Open) -> None:
         deeds = [(floor(time_s / QUANTUM_S + 0.5) * QUANTUM_S, deed) for time_s, deed in wanted.deeds]
@@ -183,7 +146,8 @@ class EmulatedSource:
         self._array = emulation.array
         self._board = Arrangement(emulation, cells)
         self._teller = Teller(self._array, self._board)
-        self._timeline: Timeline[_Moment, commands.Hand] = Timeline(deeds)
+        self._stepper = Stepper(self._array)
+        self._timeline: Timeline[_Moment, hands.Hand] = Timeline(deeds)
         self._pace = Pace(wanted.speed, wanted.paused, wanted.until_s)
         self._events = [run_event(0.0, {"seed": wanted.seed, "shape": shape.name, "tiles": len(cells)})]
         self._events += [deed_event(time_s, commands.told(deed)) for time_s, deed in deeds]
@@ -191,6 +155,27 @@ class EmulatedSource:
             self._do_planned(planned)
         self._look()
         self._keep()
+
+    def _instruct(self, port: str, count: int) -> None:
+        if self._emulation is None:
+            raise UsageError("nothing runs yet; open a drawing first")
+        if not self._pace.paused:
+            raise UsageError("single instructions are for a run that stands; pause it first")
+        tile, now_s = self._array[tile_of(self._board, port)], self._array.time_s
+        if not tile.powered:
+            raise UsageError(f"{port} has no power, and executes nothing; switch it on first")
+        ahead_s = now_s + LONGEST_STEP_S
+        if count and (self._emulation.faults.next_s <= ahead_s or self._timeline.deeds_in(now_s, ahead_s)):
+            raise UsageError("a planned fault or deed is about to happen; let time go past it, by one update")
+        self._stepper.step(tile, count)
+        self._timeline.reached(self._array.time_s)
+        self._look()
+        self._events.append(self._stepper.tell(port, tile))
+
+    def _release(self) -> None:
+        """Lets a tile go on that was halted between two instructions, up to the present of the others."""
+        if self._emulation is not None and self._stepper.release():
+            self._pass_time(QUANTUM_S)
 
     def _shape(self, cells: Sequence[Place]) -> Shape:
         """The drawing with these cells: one of those offered, or an own one."""
@@ -215,6 +200,7 @@ class EmulatedSource:
     def _run(self, seconds: float) -> None:
         if seconds <= 0:
             return
+        self._stepper.release()
         started, before_s = time.perf_counter(), self._array.time_s
         try:
             self._pass_time(seconds)
@@ -249,6 +235,7 @@ class EmulatedSource:
         """Goes to a time that the run has been at; all that hands did until then is done."""
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
+        self._release()
         from_s, time_s = self._array.time_s, min(time_s, self._timeline.end_s)
         at_s, moment = self._timeline.nearest(time_s)
         if not at_s <= from_s <= time_s:  # or it is nearer to run on

@@ -27,6 +27,8 @@ from tilenca.protocol.stream import (
 from tilenca.shapes.file import UNKNOWN
 from tilenca.shapes.glyphs import Look, look_of, looks_of
 
+# So often it looks at the fleet as a whole.
+LOOK_S = 0.1
 NO_PORT = "no port"
 NO_LINKS = "----"
 # A tile that was asked for its HELLO answers by then; a later one is a start.

@@ -45,7 +45,11 @@ class Outbox:
             if kind in event:
                 return (kind,)
         return (
-            next(key for key in ("place", "cable", "open", "display", "health") if key in event),
+            next(
+                key
+                for key in ("place", "cable", "open", "display", "health", "fault", "chip")
+                if key in event
+            ),
             port,
             event.get("side"),
         )

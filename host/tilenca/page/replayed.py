@@ -11,10 +11,9 @@ from tilenca.fleet.grid import Grid
 from tilenca.fleet.recording import read_recording
 from tilenca.fleet.state import Event, PortNews
 from tilenca.fleet.tiles_file import Place
-from tilenca.page.fleet_teller import FleetTeller
+from tilenca.page.fleet_teller import LOOK_S, FleetTeller
 from tilenca.protocol.stream import STREAM_VERSION, StreamEvent, pace_event, run_event, stream_event
 
-LOOK_S = 0.1
 # Times below are of emulated tiles, and count from the run's beginning.
 LONGEST_S = 86_400.0 * 365
 # What the page takes.

@@ -14,6 +14,7 @@ from tilenca.protocol.stream import (
     StreamEvent,
     cable_event,
     display_event,
+    fault_event,
     frame_event,
     open_event,
     place_event,
@@ -32,6 +33,7 @@ class _Seen:
     place: Place | None = None
     powered: bool | None = None
     display: tuple[int, tuple[int, ...], str] | None = None
+    fault: tuple[bool, float] = (False, 0.0)
 
 
 @dataclass
@@ -75,6 +77,9 @@ class Teller:
             if place is not None and tile.powered != seen.powered:
                 seen.powered = tile.powered
                 events.append(open_event(now_s, port, tile.powered, "" if tile.powered else NO_POWER))
+            if (fault := self._board.fault_of(tile.index)) != seen.fault:
+                seen.fault = fault
+                events.append(fault_event(now_s, port, *fault))
         cut = self._board.cut
         for link in sorted(cut ^ self._seen_cut):
             events.append(cable_event(now_s, port_name(link[0]), SIDES[link[1]], link not in cut))

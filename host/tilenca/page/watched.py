@@ -13,17 +13,17 @@ from tilenca.emulator.arrangement import FOR_EVER, STOPPED_UPDATES
 from tilenca.fleet.listen import Listener
 from tilenca.fleet.recording import Recorder, format_event
 from tilenca.fleet.state import Event
-from tilenca.page.fleet_teller import FleetTeller
+from tilenca.page.fleet_teller import LOOK_S, FleetTeller
 from tilenca.page.orders import Deliver, Order, Orders
 from tilenca.page.session import EndedError
 from tilenca.protocol import stream_commands as commands
+from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.commands import ask_command, blink_command, restart_command, set_command
 from tilenca.protocol.stream import StreamEvent, pace_event, refused_event, run_event, stream_event
 
 # What a page can do with real tiles; the rest only a hand at the tiles can.
 TAKES = ("rest", "freeze", "blink", "restart", "set", "seen")
 POLL_S = 0.05
-LOOK_S = 0.1
 # A tile that speaks and has not said what it runs is asked for it, so often.
 ASK_S = 5.0
 REFUSAL = "these are real tiles: only a hand at the table can do that"
@@ -227,13 +227,13 @@ class WatchedSource:
         """
         order = self._watch.order
         match command:
-            case commands.Freeze(port, on):
+            case hands.Freeze(port, on):
                 order("SET", set_command("updates", self._watch.updates_of(port, on)), port, self._hear)
-            case commands.Set(name, value, port):
+            case hands.Set(name, value, port):
                 order("SET", set_command(name, value), port, self._hear)
-            case commands.Blink(port, seconds):
+            case hands.Blink(port, seconds):
                 order("BLINK", blink_command(seconds), port, self._hear)
-            case commands.Restart(port):
+            case hands.Restart(port):
                 order("RESTART", restart_command(), port, self._hear)
             case commands.Rest():
                 pass  # they go on anyhow

@@ -1,6 +1,6 @@
 """The host's commands to a tile, as sentences (docs/PROTOCOL.md section 6)."""
 
-from tilenca.protocol.constants import MAX_BLINK_S, PRESETS, SETTING_RANGES
+from tilenca.protocol.constants import MAX_BLINK_S, MAX_REVISION, MAX_SERIAL, PRESETS, SETTING_RANGES
 from tilenca.protocol.sentences import framed
 
 
@@ -10,7 +10,7 @@ def ask_command() -> bytes:
 
 
 def chip_command() -> bytes:
-    """Asks a tile for its fuse and lock bytes."""
+    """Asks a tile for its fuse and lock bytes, and its marking."""
     return framed("CHIP")
 
 
@@ -30,6 +30,20 @@ def set_command(name: str, value: int | str) -> bytes:
         if not isinstance(value, int) or not low <= value <= high:
             raise ValueError(f"{name} '{value}': must be a whole number in {low}..{high}")
     return framed(f"SET,{name},{value}")
+
+
+def mark_command(revision: int, serial: int, replace: bool = False) -> bytes:
+    """Marks a board with its revision and serial number, for good unless told to `replace` that.
+
+    Raises:
+        ValueError: out of range.
+    """
+    if not 1 <= revision <= MAX_REVISION or not 0 <= serial <= MAX_SERIAL:
+        raise ValueError(
+            f"board '{revision}.{serial}': the revision is 1..{MAX_REVISION}, "
+            f"the serial number 0..{MAX_SERIAL}"
+        )
+    return framed(f"MARK,{revision},{serial}{',replace' if replace else ''}")
 
 
 def blink_command(seconds: int) -> bytes:

@@ -35,6 +35,11 @@ SETTING_RANGES = {
     "period": (MIN_PERIOD_MS, MAX_PERIOD_MS),
     "updates": (0, 0xFFFF),
     "brightness": (0, MAX_BRIGHTNESS),
-    "leds": (0, 1),
+    "leds": (0, 2),
 }
 PRESETS = ("paper", "default")
+# The marking of a board in EEPROM, twice from this address.
+MARKING_AT = 2 * SETTINGS_SIZE
+MAX_REVISION = 0xFF
+MAX_SERIAL = 0xFFFF
+MISSING = 32  # a direction's score above which a tile is missing there, as a message (section 4)

@@ -28,6 +28,7 @@ NAK_REASONS = {
     "UNKNOWN": "no such command",
     "VALUE": "wrong field",
     "EEPROM": "the EEPROM did not keep it",
+    "MARKED": "it has another marking; --replace replaces it",
 }
 
 
@@ -65,8 +66,8 @@ def words(sentence: Sentence) -> str:
         case TimeSentence(_, _, compute_us, awake_permille, gap_us, stack_unused, dropped):
             times = f"computes {compute_us} us awake {awake_permille / 10:.1f} % longest turn {gap_us} us"
             return f"{times} stack {stack_unused} bytes unused {dropped} sentences dropped"
-        case ChipSentence(_, low, high, extended, lock):
-            return f"fuses low {low:02X} high {high:02X} extended {extended:02X} lock {lock:02X}"
+        case ChipSentence():
+            return _chip_words(sentence)
         case BoardSentence():
             return _board_words(sentence)
         case ErrorSentence(_, _, code, text):
@@ -87,6 +88,11 @@ def _hello_words(hello: HelloSentence) -> str:
         f"protocol {hello.version} firmware {hello.firmware_id:08X} {model} {pace} "
         f"reset by {reset_words(hello.reset_cause)}"
     )
+
+
+def _chip_words(chip: ChipSentence) -> str:
+    fuses = f"fuses low {chip.low:02X} high {chip.high:02X} extended {chip.extended:02X} lock {chip.lock:02X}"
+    return fuses if chip.revision is None else f"{fuses} board revision {chip.revision} serial {chip.serial}"
 
 
 def _board_words(board: BoardSentence) -> str:

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from tilenca.protocol.constants import PROTOCOL_VERSION
+from tilenca.base.sides import SIDES
+from tilenca.protocol.constants import MESSAGE_OFFSET, MISSING, PROTOCOL_VERSION
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,7 @@ class HelloSentence:
         reset_cause: MCUSR, as far as the tile knows it.
         firmware_id: CRC-32 of the image in its flash, see `tilenca.fleet.image.firmware_id`.
         brightness: 0..255.
+        directions: 4: the channels before the classes' say on which side a tile is missing; 0: none do.
     """
 
     version: int
@@ -28,6 +30,7 @@ class HelloSentence:
     reset_cause: int
     firmware_id: int
     brightness: int
+    directions: int = 0
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,19 @@ class TileSentence:
     margin: int | None
     links: str
     state: bytes
+
+
+def missing_side(hello: HelloSentence, tile: TileSentence) -> str:
+    """The side on which a tile says that one is missing; empty for none, or if its model has no directions.
+
+    Args:
+        hello: of the tile.
+        tile: what it says now.
+    """
+    first = hello.channels - hello.classes - hello.directions
+    scores = [byte - MESSAGE_OFFSET for byte in tile.state[first : first + hello.directions]]
+    most = max(scores, default=MISSING)
+    return SIDES[scores.index(most)] if most > MISSING else ""
 
 
 @dataclass(frozen=True)
@@ -100,13 +116,24 @@ class TimeSentence:
 
 @dataclass(frozen=True)
 class ChipSentence:
-    """The chip's fuse bytes and its lock byte, on request."""
+    """The chip's fuse bytes and its lock byte, and the board's marking; at boot and on request.
+
+    Attributes:
+        revision: of the board; None where it was not marked, as is `serial`, its number.
+    """
 
     tile: int
     low: int
     high: int
     extended: int
     lock: int
+    revision: int | None = None
+    serial: int | None = None
+
+    @property
+    def marking(self) -> str | None:
+        """The marking as `tilenca set board` takes it."""
+        return None if self.revision is None else f"{self.revision}.{self.serial}"
 
 
 @dataclass(frozen=True)

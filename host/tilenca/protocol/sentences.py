@@ -19,6 +19,7 @@ from tilenca.protocol.sentence_types import (
     Sentence,
     TileSentence,
     TimeSentence,
+    missing_side,
 )
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "TimeSentence",
     "format_sentence",
     "framed",
+    "missing_side",
     "parse_sentence",
     "type_of",
 ]
@@ -61,6 +63,7 @@ def format_sentence(sentence: Sentence) -> bytes:
                 hello.tile,
                 f"{hello.model_id:04X},{hello.channels},{hello.classes},{hello.period_ms},{hello.updates}",
                 f"{hello.reset_cause:02X},{hello.firmware_id:08X},{hello.brightness}",
+                *([hello.directions] if hello.directions else []),
             )
         case TileSentence():
             fields = ("TILE", *list(vars(sentence).values())[:-1], sentence.state.hex().upper())
@@ -68,8 +71,8 @@ def format_sentence(sentence: Sentence) -> bytes:
             fields = ("LINK", *vars(sentence).values())
         case TimeSentence():
             fields = ("TIME", *vars(sentence).values())
-        case ChipSentence(tile, low, high, extended, lock):
-            fields = ("CHIP", tile, f"{low:02X},{high:02X},{extended:02X},{lock:02X}")
+        case ChipSentence(tile, low, high, extended, lock, revision, serial):
+            fields = ("CHIP", tile, f"{low:02X},{high:02X},{extended:02X},{lock:02X}", revision, serial)
         case BoardSentence(tile, uptime_ms, supply_mv, framing_errors, low_ms):
             fields = ("BOARD", tile, uptime_ms, supply_mv, *framing_errors, *low_ms)
         case ErrorSentence(tile, uptime_ms, code, text):
@@ -99,11 +102,11 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
 
 def _hello(text: str) -> Sentence | None:
     if (found := patterns.HELLO.fullmatch(text)) and int(found[1]) == PROTOCOL_VERSION:
-        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light = (
-            found.groups()
+        version, tile, model_id, channels, classes, period_ms, updates, cause, firmware, light, directions = (
+            found.groups(default="0")
         )
         numbers = int(channels), int(classes), int(period_ms), int(updates)
-        ids = int(cause, 16), int(firmware, 16), int(light)
+        ids = int(cause, 16), int(firmware, 16), int(light), int(directions)
         return HelloSentence(int(version), int(tile), int(model_id, 16), *numbers, *ids)
     if (found := patterns.OTHER_HELLO.fullmatch(text)) and int(found[1]) != PROTOCOL_VERSION:
         return OtherVersionSentence(int(found[1]), int(found[2]))
@@ -142,8 +145,11 @@ def _time(text: str) -> Sentence | None:
 def _chip(text: str) -> Sentence | None:
     if (found := patterns.CHIP.fullmatch(text)) is None:
         return None
-    tile, *values = found.groups()
-    return ChipSentence(int(tile), *(int(value, 16) for value in values))
+    tile, *fuses, revision, serial = found.groups()
+    if bool(revision) != bool(serial):
+        return None
+    marking = (int(revision), int(serial)) if revision else ()
+    return ChipSentence(int(tile), *(int(value, 16) for value in fuses), *marking)
 
 
 def _board(text: str) -> Sentence | None:

@@ -13,6 +13,8 @@ from tilenca.protocol.constants import (
     SETTINGS_VERSION,
 )
 
+_SWAPPED = (1, 0, 2)  # `leds` as the block has it, where 0 came first, and back
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -21,7 +23,7 @@ class Settings:
     Attributes:
         tile_id: 0: not set.
         updates: 0: for ever.
-        leds: 0: the link LEDs stay dark.
+        leds: what the link LEDs show; 0: nothing; 1: which neighbours are alive; 2: where a tile is missing.
     """
 
     tile_id: int
@@ -45,16 +47,28 @@ def settings_block(
         if not low <= value <= high:
             raise ValueError(f"{name} {value}: must be {low}..{high}")
     body = b"TN" + bytes([SETTINGS_VERSION, tile_id])
-    body += period_ms.to_bytes(2, "little") + updates.to_bytes(2, "little") + bytes([brightness, 1 - leds])
+    body += (
+        period_ms.to_bytes(2, "little") + updates.to_bytes(2, "little") + bytes([brightness, _SWAPPED[leds]])
+    )
+    return body + crc16(body).to_bytes(CRC_SIZE, "little")
+
+
+def marking_block(revision: int, serial: int) -> bytes:
+    """The block that a tile reads from EEPROM address MARKING_AT."""
+    body = b"TB" + bytes([SETTINGS_VERSION, revision]) + serial.to_bytes(2, "little") + bytes(4)
     return body + crc16(body).to_bytes(CRC_SIZE, "little")
 
 
 def parse_settings(block: bytes) -> Settings | None:
     """The settings in a block of SETTINGS_SIZE bytes, or None if a tile would ignore it."""
     body, crc = block[:-CRC_SIZE], block[-CRC_SIZE:]
-    if len(block) != SETTINGS_SIZE or body[:3] != b"TN" + bytes([SETTINGS_VERSION]) or body[9] > 1:
+    if (
+        len(block) != SETTINGS_SIZE
+        or body[:3] != b"TN" + bytes([SETTINGS_VERSION])
+        or body[9] >= len(_SWAPPED)
+    ):
         return None
     period_ms = int.from_bytes(body[4:6], "little")
     if crc16(body) != int.from_bytes(crc, "little") or not MIN_PERIOD_MS <= period_ms <= MAX_PERIOD_MS:
         return None
-    return Settings(body[3], period_ms, int.from_bytes(body[6:8], "little"), body[8], 1 - body[9])
+    return Settings(body[3], period_ms, int.from_bytes(body[6:8], "little"), body[8], _SWAPPED[body[9]])

@@ -21,6 +21,8 @@ KINDS = (
     "pace",
     "place",
     "cable",
+    "fault",
+    "chip",
     "raw",
     "open",
     "deed",
@@ -100,6 +102,16 @@ def note_event(time_s: float, port: str, text: str, bad: bool) -> StreamEvent:
 def cable_event(time_s: float, port: str, side: str, whole: bool) -> StreamEvent:
     """The cable at a side is cut, or whole again; of the tile that is west or north of it."""
     return _event(time_s, port=port, side=side, cable="whole" if whole else "cut")
+
+
+def fault_event(time_s: float, port: str, turned: bool, skew: float) -> StreamEvent:
+    """How a tile is spoilt from now on: whether it lies turned, and by how many ppm its clock is too fast."""
+    return _event(time_s, port=port, fault={"turned": turned, "skew": round(skew, 3)})
+
+
+def chip_event(time_s: float, port: str, chip: Mapping[str, object]) -> StreamEvent:
+    """What is in a tile's chip, between two of its instructions."""
+    return _event(time_s, port=port, chip=dict(chip))
 
 
 def deed_event(time_s: float, command: Mapping[str, object]) -> StreamEvent:

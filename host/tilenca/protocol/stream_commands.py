@@ -1,21 +1,20 @@
 """The commands of a page to what runs the tiles (docs/PROTOCOL.md section 7): checked and bounded."""
 
 import json
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Any, TypeAlias, get_args
 
 from tilenca.protocol import stream_fields as must_be
-from tilenca.protocol.constants import MAX_BLINK_S, SETTING_RANGES
-from tilenca.protocol.stream_fields import MAX_NAME, Check
+from tilenca.protocol.constants import SETTING_RANGES
+from tilenca.protocol.stream_fields import MAX_NAME, checked
+from tilenca.protocol.stream_hands import HANDS, Hand, Set
 
 MAX_TEXT = 16_384  # characters of a command
-MOST_FAULTS = 32
-MOST_DEEDS = 200
-MAX_SPEED = 1024.0
-MIN_SPEED = 1e-5
+MOST_FAULTS, MOST_DEEDS = 32, 200
+MIN_SPEED, MAX_SPEED = 1e-5, 1024.0
 MAX_SECONDS = 86_400.0
+MOST_INSTRUCTIONS = 1000
 MAX_SEED = 2**53 - 1  # whole numbers of JavaScript
-SETTINGS = ("period", "updates", "brightness")  # an id is nothing to change in passing
 
 
 def _deed(value: object) -> "Deed":
@@ -36,12 +35,6 @@ def _deeds(value: object) -> tuple["Deed", ...]:
     return tuple(sorted(deeds, key=lambda deed: deed[0]))
 
 
-def _checked(check: Check, default: object = MISSING) -> Any:
-    if default is MISSING:
-        return field(metadata={"check": check})
-    return field(default=default, metadata={"check": check})
-
-
 @dataclass(frozen=True)
 class Open:
     """Begins a run from power-on.
@@ -57,152 +50,63 @@ class Open:
         deeds: what hands do, and when, in order of time.
     """
 
-    cells: tuple[tuple[int, int], ...] = _checked(must_be.cells)
-    seed: int = _checked(must_be.whole(0, MAX_SEED), 0)
-    faults: tuple[str, ...] = _checked(must_be.list_of(MOST_FAULTS, must_be.text, "faults"), ())
-    spread_s: float = _checked(must_be.number(0, 3600), 1.0)
-    speed: float = _checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True), 1.0)
-    paused: bool = _checked(must_be.switch, False)
-    until_s: float | None = _checked(must_be.or_none(must_be.number(0, MAX_SECONDS)), None)
-    deeds: tuple["Deed", ...] = _checked(_deeds, ())
+    cells: tuple[tuple[int, int], ...] = checked(must_be.cells)
+    seed: int = checked(must_be.whole(0, MAX_SEED), 0)
+    faults: tuple[str, ...] = checked(must_be.list_of(MOST_FAULTS, must_be.text, "faults"), ())
+    spread_s: float = checked(must_be.number(0, 3600), 1.0)
+    speed: float = checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True), 1.0)
+    paused: bool = checked(must_be.switch, False)
+    until_s: float | None = checked(must_be.or_none(must_be.number(0, MAX_SECONDS)), None)
+    deeds: tuple["Deed", ...] = checked(_deeds, ())
 
 
 @dataclass(frozen=True)
 class Pace:
     """Time passes at `speed` times real time; 0: as fast as it can."""
 
-    speed: float = _checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True))
-    paused: bool = _checked(must_be.switch, False)
+    speed: float = checked(must_be.number(MIN_SPEED, MAX_SPEED, or_zero=True))
+    paused: bool = checked(must_be.switch, False)
 
 
 @dataclass(frozen=True)
 class Rest:
     """Nobody looks (or somebody does again): time stands still, whatever the pace."""
 
-    on: bool = _checked(must_be.switch)
+    on: bool = checked(must_be.switch)
 
 
 @dataclass(frozen=True)
 class Step:
     """Runs so many seconds, while paused."""
 
-    seconds: float = _checked(must_be.number(16e-6, 10))
+    seconds: float = checked(must_be.number(16e-6, 10))
 
 
 @dataclass(frozen=True)
 class Seek:
     """Goes to a time that the run has been at, and pauses there."""
 
-    seconds: float = _checked(must_be.number(0, MAX_SECONDS))
+    seconds: float = checked(must_be.number(0, MAX_SECONDS))
 
 
 @dataclass(frozen=True)
-class Put:
-    """Plugs a tile in at an empty place; it boots."""
+class Instruct:
+    """Executes so many instructions of a tile, while paused, and tells what is in its chip."""
 
-    row: int = _checked(must_be.place)
-    col: int = _checked(must_be.place)
-
-
-@dataclass(frozen=True)
-class Pull:
-    """Takes a tile away."""
-
-    port: str = _checked(must_be.text)
-
-
-@dataclass(frozen=True)
-class Move:
-    """Takes a tile out and plugs it in at another place, where it boots."""
-
-    port: str = _checked(must_be.text)
-    row: int = _checked(must_be.place)
-    col: int = _checked(must_be.place)
-
-
-@dataclass(frozen=True)
-class Arrange:
-    """Makes another drawing of the running tiles: those that lie in both stay and keep their state."""
-
-    cells: tuple[tuple[int, int], ...] = _checked(must_be.cells)
-
-
-@dataclass(frozen=True)
-class Cut:
-    """Cuts the cable at a side of a tile, or mends it."""
-
-    port: str = _checked(must_be.text)
-    side: str = _checked(must_be.side)
-    on: bool = _checked(must_be.switch, True)
-
-
-@dataclass(frozen=True)
-class Power:
-    """Takes a tile's power, or gives it back; it keeps its place."""
-
-    port: str = _checked(must_be.text)
-    on: bool = _checked(must_be.switch)
-
-
-@dataclass(frozen=True)
-class Freeze:
-    """Stops a tile's updates; it goes on saying its last state. Or lets it update again."""
-
-    port: str = _checked(must_be.text)
-    on: bool = _checked(must_be.switch, True)
-
-
-@dataclass(frozen=True)
-class Reset:
-    """Resets a tile."""
-
-    port: str = _checked(must_be.text)
-
-
-@dataclass(frozen=True)
-class Noise:
-    """From now on this share of the bytes on all cables is lost."""
-
-    loss: float = _checked(must_be.number(0, 1))
-
-
-@dataclass(frozen=True)
-class Blink:
-    """Lets a tile blink for some seconds, so that a person finds it."""
-
-    port: str = _checked(must_be.text)
-    seconds: int = _checked(must_be.whole(0, MAX_BLINK_S), 5)
-
-
-@dataclass(frozen=True)
-class Restart:
-    """Presses a tile's button: it begins again from the seed."""
-
-    port: str = _checked(must_be.text)
-
-
-@dataclass(frozen=True)
-class Set:
-    """Sets a tile's period (ms), updates (0: for ever) or brightness; without a port, that of all tiles."""
-
-    name: str = _checked(must_be.one_of(*SETTINGS))
-    value: int = _checked(must_be.whole(0, 0xFFFF))
-    port: str | None = _checked(must_be.or_none(must_be.text), None)
+    port: str = checked(must_be.text)
+    count: int = checked(must_be.whole(0, MOST_INSTRUCTIONS), 1)
 
 
 @dataclass(frozen=True)
 class Seen:
     """The page has shown this batch: the next one may come."""
 
-    batch: int = _checked(must_be.whole(0, MAX_SEED))
+    batch: int = checked(must_be.whole(0, MAX_SEED))
 
 
-# Those that change something.
-Hand: TypeAlias = Put | Pull | Move | Arrange | Cut | Power | Freeze | Reset | Noise | Blink | Restart | Set
-HANDS: tuple[type[Any], ...] = get_args(Hand)
 Deed: TypeAlias = tuple[float, Hand]
 
-StreamCommand: TypeAlias = Open | Pace | Rest | Step | Seek | Hand | Seen
+StreamCommand: TypeAlias = Open | Pace | Rest | Step | Seek | Instruct | Hand | Seen
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in get_args(StreamCommand)}
 
 
@@ -230,11 +134,9 @@ def parse_command(text: str) -> StreamCommand:
 
 
 def told(command: Hand) -> dict[str, Any]:
-    """The command as an object again, with all its fields."""
+    """The command as JSON has it, with all its fields."""
     values = {one.name: getattr(command, one.name) for one in fields(command)}
-    if isinstance(command, Arrange):
-        values["cells"] = [list(cell) for cell in command.cells]
-    return {"do": type(command).__name__.lower(), **values}
+    return {"do": type(command).__name__.lower(), **json.loads(json.dumps(values))}
 
 
 def _read(about: dict[str, Any]) -> StreamCommand:
@@ -253,13 +155,10 @@ def _read(about: dict[str, Any]) -> StreamCommand:
             raise ValueError(f"{name}: {one.name} is missing")
     if about:
         raise ValueError(f"{name}: it has no {str(next(iter(about)))[:MAX_NAME]!r}")
-    if kind is Set and not _is_in_range(given["name"], given["value"]):
-        low, high = SETTING_RANGES[given["name"]]
-        raise ValueError(f"{name}: value must be a whole number in {low}..{high}")
+    if kind is Set:
+        try:
+            must_be.whole(*SETTING_RANGES[given["name"]])(given["value"])
+        except ValueError as error:
+            raise ValueError(f"{name}: value {error}") from None
     command: StreamCommand = kind(**given)
     return command
-
-
-def _is_in_range(name: str, value: int) -> bool:
-    low, high = SETTING_RANGES[name]
-    return low <= value <= high

@@ -1,6 +1,7 @@
 """Checks of a command's fields: each returns the value, or says in words what it must be."""
 
 from collections.abc import Callable
+from dataclasses import MISSING, field
 from typing import Any, TypeAlias
 
 from tilenca.base.sides import SIDES
@@ -95,3 +96,10 @@ def cells(value: object) -> tuple[tuple[int, int], ...]:
 def or_none(check: Check) -> Check:
     """None, or what the other check wants."""
     return lambda value: None if value is None else check(value)
+
+
+def checked(check: Check, default: object = MISSING) -> Any:
+    """A field of a command: how it is checked, and what it is where it is left out."""
+    if default is MISSING:
+        return field(metadata={"check": check})
+    return field(default=default, metadata={"check": check})

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from tilenca.emulator.experiment import EmulationSettings
-from tilenca.emulator.faults import FaultSpec
-from tilenca.emulator.faults import parse as parse_fault
+from tilenca.emulator.fault_spec import FaultSpec
+from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.library import library as emulator_library
 from tilenca.model.cost import frame_bytes

@@ -34,7 +34,7 @@ class Config:
         del recipe["validation_runs"]
         return {
             "recipe": recipe,
-            "dimensions": asdict(self.dimensions),
+            "dimensions": self.dimensions.as_json(),
             "seed": self.seed,
             "labels": list(self.labels),
             "sources": list(self.sources),

@@ -6,13 +6,16 @@ recipe's `library` gives them, and are replaced again and again, so that trainin
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.base.sides import SIDES
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.derive import at_sizes
 from tilenca.shapes.file import UNKNOWN, Shape
+from tilenca.shapes.gaps import Gaps
 from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows
 from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED, Generator
@@ -33,6 +36,7 @@ class Curriculum:
         failing: (S,) int64, the record of failures that a drawing belongs to: of its own, or of its kind and
             class where it is renewed.
         generator: draws the ones that are renewed; None: none is.
+        gaps: knows where tiles are missing; None: the network does not learn to say it.
     """
 
     drawings: Drawings
@@ -40,6 +44,39 @@ class Curriculum:
     weights: NDArray[np.float64]
     failing: NDArray[np.int64]
     generator: Generator | None = None
+    gaps: Gaps | None = None
+
+    @cached_property
+    def _whole_one(self) -> NDArray[np.int64]:
+        """(S,) the whole drawing that a drawing is with one tile missing, -1 for none or a doubt."""
+        if self.gaps is None:
+            return np.full(len(self.kinds), -1)
+        numbers = {shape.rows: n for n, shape in enumerate(self.drawings.shapes) if not self.renewable[n]}
+        found = [self.gaps.missing(shape) for shape in self.drawings.shapes]
+        return np.array([-1 if one is None else numbers[one[0]] for one in found])
+
+    def missing(self, chosen: NDArray[np.int64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """The sides of the cells of some drawings on which a tile is missing, and where that is known.
+
+        Args:
+            chosen: (B,) drawings, of N cells.
+
+        Returns:
+            (N, 4) bool, and (N,) bool.
+        """
+        assert self.gaps is not None
+        shapes = [self.drawings.shapes[number] for number in chosen]
+        sides = [self.gaps.sides(shape) for shape in shapes]
+        sizes = self.drawings.sizes[chosen]
+        empty = [np.zeros((size, len(SIDES)), np.bool_) for size in sizes]
+        told = np.array([one is not None for one in sides])
+        missing = [none if one is None else one for one, none in zip(sides, empty, strict=True)]
+        return np.concatenate(missing), np.repeat(told, sizes)
+
+    def with_one_tile_changed(self, drawing: int) -> NDArray[np.int64]:
+        """The drawings that have one tile less than a whole one, or the whole one that lacks a tile."""
+        whole = self._whole_one[drawing]
+        return np.flatnonzero(self._whole_one == drawing) if whole < 0 else np.array([whole])
 
     @property
     def whole(self) -> NDArray[np.bool_]:
@@ -111,11 +148,17 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     entries = [(DRAWN, shape) for shape in drawn] + [
         (STRETCHED, shape) for shape in stretched if shares[STRETCHED]
     ]
+    gaps = Gaps(shape for _, shape in entries) if recipe.directions else None
     renewed = {kind: share for kind, share in shares.items() if kind not in (DRAWN, STRETCHED) and share}
     generator = None
     if renewed:
         generator = Generator(
-            task, [shape for _, shape in entries], tuple(renewed), recipe.library // 5, random
+            task,
+            [shape for _, shape in entries],
+            tuple(renewed),
+            recipe.library // 5,
+            random,
+            gaps is not None,
         )
         for kind, share in renewed.items():
             count = max(len(task.labels), round(recipe.library * share / sum(renewed.values())))
@@ -124,7 +167,7 @@ def build(task: Drawings, recipe: Recipe, sizes: Sizes, random: np.random.Genera
     drawings = replace(task, shapes=tuple(shape for _, shape in entries), groups=(0,) * len(entries))
     counts = {kind: int((kinds == kind).sum()) for kind in shares}
     weights = np.array([shares[kind] / counts[kind] for kind, _ in entries])
-    return Curriculum(drawings, kinds, weights, _failing(drawings, kinds), generator)
+    return Curriculum(drawings, kinds, weights, _failing(drawings, kinds), generator, gaps)
 
 
 def _stretched(task: Drawings, sizes: Sequence[Size]) -> Iterator[Shape]:

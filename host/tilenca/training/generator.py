@@ -28,6 +28,8 @@ ONE_TILE, DEAD = (
     0.5,
     (0.03, 0.16),
 )  # share of damaged drawings with one tile missing; share of tiles that others miss
+ONE_GAP = 0.9  # the same where tiles learn to say where one is missing
+FROM_FILES, FROM_FILES_GAPS = 0.65, 0.3  # share of drawings of the files, and variants, among those to change
 TORN = 0.3  # share of damaged drawings that may be torn apart
 CLEAR = 30  # tiles of a drawing in which one tile too many leaves no doubt
 MOST_EDITS = 3
@@ -44,6 +46,8 @@ class Generator:
         kinds: the kinds to draw.
         indexed: how many variants the drawings of no class are compared with.
         random: for those.
+        gaps: whether tiles learn to say where one is missing: then hardly ever several are, and drawings of
+            all sizes are damaged alike.
     """
 
     def __init__(
@@ -53,8 +57,11 @@ class Generator:
         kinds: Sequence[str],
         indexed: int,
         random: np.random.Generator,
+        gaps: bool = False,
     ) -> None:
         self.kinds = tuple(kinds)
+        self._one_tile = ONE_GAP if gaps else ONE_TILE
+        self._from_files = FROM_FILES_GAPS if gaps else FROM_FILES
         self._variants: Variants | None = task.variants
         extents = [(len(shape.rows), len(shape.rows[0])) for shape in whole]
         largest = max(rows for rows, _ in extents), max(cols for _, cols in extents)
@@ -105,7 +112,7 @@ class Generator:
         chance = random.random()
         if chance < 0.3 and self._variants is not None:
             return self._varied(random)
-        among = self._drawn if chance < 0.65 else self._whole
+        among = self._drawn if chance < self._from_files else self._whole
         return among[int(random.integers(len(among)))]
 
     def _damaged(self, random: np.random.Generator) -> Shape | None:
@@ -114,7 +121,7 @@ class Generator:
         if shape is None or len(shape.cells) < 3:
             return None
         cells = list(shape.cells)
-        if random.random() < ONE_TILE:
+        if random.random() < self._one_tile:
             rows = self._without_one(shape, cells, random)
         else:
             gone = max(1, round(random.uniform(*DEAD) * len(cells)))

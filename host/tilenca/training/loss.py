@@ -3,7 +3,9 @@
 A tile's last channels are its scores, one per class; it shows the class with the largest score. The loss has
 two terms:
 
-- the squared error of the scores. The score of the drawing's class should be 1, all others 0;
+- the squared error of the scores. The score of the drawing's class should be 1, all others 0. Where a
+  network has directions, their four scores come before those of the classes: that of the side on which a
+  tile is missing should be 1;
 - a stability penalty: in a grid that has converged, a tile that is right should keep its whole state. A tile
   that is wrong there pays no penalty, because it must stay free to change.
 """
@@ -15,7 +17,11 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from tilenca.base.sides import SIDES
+from tilenca.model.directions import NOWHERE, THRESHOLD
 from tilenca.shapes.batch import NO_CLASS
+
+BESIDE = 5.0  # weight of a tile beside a gap, of which there are one or two in twenty, against the others
 
 
 @dataclass(frozen=True)
@@ -27,12 +33,41 @@ class Goal:
         target: (N,) int64, the class of each cell's drawing.
         counted: (N,) bool, cells whose scores count: their grid is complete and was so from the beginning.
         converged: (N,) bool, cells of grids that should not change any more.
+        gaps: what the scores of the directions should be; None: there are none.
     """
 
     classes: int
     target: Tensor
     counted: Tensor
     converged: Tensor
+    gaps: "GapGoal | None" = None
+
+
+@dataclass(frozen=True)
+class GapGoal:
+    """Where tiles are missing.
+
+    Attributes:
+        missing: (N, 4) float32, 1 for the sides N, E, S, W of a cell on which a tile is missing.
+        told: (N,) bool, cells of grids of which that is known.
+        weight: of the error of these scores, beside that of the classes'.
+    """
+
+    missing: Tensor
+    told: Tensor
+    weight: float
+
+    def error(self, scores: Tensor) -> Tensor:
+        """(N,) the weighted squared error of (N, 4) scores, more where a tile is missing."""
+        weight = self.weight * self.told * torch.where(self.missing.any(dim=1), BESIDE, 1.0)
+        return weight * (scores - self.missing).square().sum(dim=1)
+
+    def right(self, scores: Tensor) -> Tensor:
+        """(N,) bool, whether a tile says what it should, see `tilenca.model.directions`."""
+        most, side = scores.max(dim=1)
+        says = torch.where(most > THRESHOLD, side, NOWHERE)
+        should = torch.where(self.missing.any(dim=1), self.missing.argmax(dim=1), NOWHERE)
+        return (says == should) | ~self.told
 
 
 def scores_of(states: Tensor, classes: int) -> Tensor:
@@ -46,6 +81,11 @@ def scores_of(states: Tensor, classes: int) -> Tensor:
         (N, K) float32.
     """
     return states[:, -classes:]
+
+
+def directions_of(states: Tensor, classes: int) -> Tensor:
+    """(N, 4) the scores of the directions of each cell, which come before those of the classes."""
+    return states[:, -classes - len(SIDES) : -classes]
 
 
 def agreed_targets(scores: Tensor, target: Tensor, starts: NDArray[np.int64]) -> Tensor:
@@ -85,8 +125,12 @@ def loss_of(start: Tensor, end: Tensor, goal: Goal, stability_penalty: float, li
     error = (scores - wanted).square().sum(dim=1)
     if limit > 0:
         error = error / (1 + error / limit)
+    if goal.gaps is not None:
+        error = error + goal.gaps.error(directions_of(end, goal.classes))
     loss = (error * goal.counted).mean()
     if stability_penalty > 0:
         stable = goal.converged & (scores.argmax(dim=1) == goal.target)
+        if goal.gaps is not None:
+            stable = stable & goal.gaps.right(directions_of(end, goal.classes))
         loss = loss + stability_penalty * ((end - start).square().sum(dim=1) * stable).mean()
     return loss

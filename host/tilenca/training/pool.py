@@ -107,7 +107,7 @@ class Pools:
         chosen_states = states[batch.sample, batch.place]
         fresh = (chosen_states == self._seed).all(axis=1)
         given = Circumstances(staggered, away, lossless, fresh)
-        return Taken(perturbed, undisturbed, batch, chosen_states, converged, given)
+        return Taken(perturbed, undisturbed, batch, chosen_states, converged, given, chosen)
 
     def _take_perturbed(self, count: int) -> tuple[Numbers, int, int]:
         """Draws grids of the perturbed pool: up to which one they are reset, and up to which disturbed."""
@@ -215,7 +215,14 @@ class Pools:
         return np.array([self._pick(self._drawn if drawn else self._whole) for _ in range(count)], np.int64)
 
     def pick_other(self, drawing: int) -> int:
-        """Another drawing of about its size, often one that stays; the same where there is none."""
+        """Another drawing of about its size, often one that stays; the same where there is none.
+
+        By the recipe's share of `one_tile` it is one with a tile less, or with the missing one back.
+        """
+        if self.recipe.one_tile and self.random.random() < self.recipe.one_tile:
+            near_ones = self.curriculum.with_one_tile_changed(drawing)
+            if len(near_ones):
+                return int(self.random.choice(near_ones))
         extents = self.drawings.extents
         near = (np.abs(extents - extents[drawing]) <= SAME_SCALE).all(axis=1)
         near[drawing] = False

@@ -24,6 +24,7 @@ class Taken:
         converged: (B,) bool, undisturbed for so long that nothing should change any more.
         given: their circumstances during the rollout; tiles that are away are back in the seed state when the
         grid is taken again, and the undisturbed pool loses no messages.
+        drawing: (B,) the drawing of each grid.
     """
 
     perturbed: Numbers
@@ -32,6 +33,7 @@ class Taken:
     states: States
     converged: NDArray[np.bool_]
     given: Circumstances
+    drawing: Numbers
 
     @property
     def counted(self) -> NDArray[np.bool_]:

@@ -72,6 +72,9 @@ class Recipe:
             training begins with those of the files and the stretched ones.
         failure_weighting: share of failure-weighted sampling: how much the choice of drawings depends on how
             often each failed lately.
+        directions: weight of the error of four more scores, which say on which side of a tile another one is
+            missing; 0: the model has none.
+        one_tile: share of the rebuilt grids that get just one tile less, or that one back.
         check_every: iterations from one short measurement to the next; training ends early when all targets
             hold in several of them; 0: never, the last weights become the model.
         validation_runs: runs of each drawing in the final measurement.
@@ -123,6 +126,8 @@ class Recipe:
     unknown: float = 0.0
     ramp: tuple[float, float] = (0.0, 0.0)
     failure_weighting: float = 0.0
+    directions: float = 0.0
+    one_tile: float = 0.0
     check_every: int = 0
     validation_runs: int = 100
 
@@ -224,6 +229,21 @@ RECIPES: dict[str, Recipe] = {
         check_every=1_000,
         validation_runs=100,
     ),
+    # Tiles also say on which side another one is missing, at the drawn size: docs/TRAINING.md says why.
+    "damage": replace(
+        FULL,
+        iterations=30_000,
+        stretch=1.0,
+        stretched=0.0,
+        damaged=0.45,
+        unknown=0.15,
+        directions=2.0,
+        one_tile=0.5,
+        mine_every=1000,
+        trials=150,
+        check_every=0,
+        validation_runs=100,
+    ),
     # As published: no pool, no limits, one sampler.
     "paper": Recipe(
         hidden=40,
@@ -239,7 +259,6 @@ RECIPES: dict[str, Recipe] = {
     "smoke": replace(
         FULL,
         hidden=40,
-        seeds=1,
         iterations=40,
         batch=8,
         ticks=(4, 8),
@@ -272,13 +291,10 @@ def find_recipe(name: str) -> Recipe:
 
 def aims_of(recipe: Recipe) -> Aims:
     """The aims of a recipe."""
-    return Aims(recipe.stretch, recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0)
+    shown = (recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0, recipe.directions > 0)
+    return Aims(recipe.stretch, *shown)
 
 
 def trains_for(recipe: Recipe, key: str) -> bool:
-    """Whether a recipe trains for the measurements of this key.
-
-    To give one answer on any drawing, tiles need drawings beside those of the classes; the suite asks
-    all models for it.
-    """
+    """Whether a recipe trains for the measurements of this key; one answer needs other drawings, too."""
     return key != "one answer" or recipe.unknown > 0 or recipe.unlabelled > 0

@@ -20,9 +20,10 @@ from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
 from tilenca.training.config import Config
 from tilenca.training.curriculum import Curriculum
-from tilenca.training.loss import Goal, agreed_targets, loss_of, scores_of
+from tilenca.training.loss import GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
 from tilenca.training.network import TileNet, initial_arrays
 from tilenca.training.pool import Pools
+from tilenca.training.pool_batch import Taken
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
 from tilenca.training.rollout import rollout
 from tilenca.training.update_schedule import draw_schedule
@@ -128,12 +129,12 @@ class Trainer:
             for array in (batch.target, taken.counted[batch.sample], taken.converged[batch.sample])
         )
         target = agreed_targets(scores_of(end, len(self.config.labels)), target, batch.starts)
-        goal = Goal(len(self.config.labels), target, counted, converged)
+        goal = Goal(len(self.config.labels), target, counted, converged, self._gaps(taken))
         limit = recipe.loss_limit if self.iteration >= recipe.limited_from * recipe.iterations else 0.0
         loss = loss_of(start, end, goal, recipe.stability_penalty, limit)
 
         self._descend(loss)
-        right = _all_right(scores_of(end, goal.classes), target, batch)
+        right = _all_right(end, goal, batch)
         self.pools.give_back(taken, end.detach().cpu().numpy(), lengths, right)
         self.iteration += 1
         self._refresh_pools()
@@ -143,6 +144,14 @@ class Trainer:
             self.history.append((self.iteration, *self.recent()))
             self._since.clear()
         return report
+
+    def _gaps(self, taken: Taken) -> GapGoal | None:
+        """Where tiles are missing, for a network that learns to say it."""
+        if not (weight := self.config.recipe.directions):
+            return None
+        missing, told = self.pools.curriculum.missing(taken.drawing)
+        sides = torch.from_numpy(missing.astype(np.float32)).to(self.device)
+        return GapGoal(sides, torch.from_numpy(told).to(self.device), weight)
 
     def _lengths(self, batch: Batch) -> NDArray[np.int64]:
         """(B,) ticks of each rollout: drawn from the recipe's range, more where the sample is large."""
@@ -271,7 +280,11 @@ def model_of(trained: Trained, metadata: dict[str, object]) -> tuple[Model, int]
     return quantise(trained.config.dimensions, trained.config.labels, trained.weights, metadata)
 
 
-def _all_right(scores: Tensor, target: Tensor, batch: Batch) -> NDArray[np.bool_]:
-    wrong = (scores.detach().argmax(dim=1) != target).cpu().numpy()
-    right: NDArray[np.bool_] = np.add.reduceat(wrong, batch.starts, dtype=np.int64) == 0
+def _all_right(states: Tensor, goal: Goal, batch: Batch) -> NDArray[np.bool_]:
+    """(B,) whether all tiles of a grid show its class and, where there are directions, say them right."""
+    states = states.detach()
+    fine = scores_of(states, goal.classes).argmax(dim=1) == goal.target
+    if goal.gaps is not None:
+        fine &= goal.gaps.right(directions_of(states, goal.classes))
+    right: NDArray[np.bool_] = np.add.reduceat(~fine.cpu().numpy(), batch.starts, dtype=np.int64) == 0
     return right

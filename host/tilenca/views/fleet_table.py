@@ -14,6 +14,7 @@ from tilenca.fleet.side_hints import line_hints
 from tilenca.fleet.state import Event, Fleet, PortNews, TileView
 from tilenca.protocol.board_test import BOARD_TEST
 from tilenca.protocol.describe import printable, said
+from tilenca.protocol.sentences import missing_side
 from tilenca.views.table import table
 
 
@@ -62,6 +63,7 @@ def cells(view: TileView, now_s: float) -> list[str]:
         or (BOARD_TEST if view.board_test else "silent" if quiet else "")
         or (view.error.code if view.error else "")
         or _hints(view)
+        or _missing(view)
     )
     return [
         view.port,
@@ -81,6 +83,11 @@ def cells(view: TileView, now_s: float) -> list[str]:
 def _hints(view: TileView) -> str:
     hints = line_hints(view.board, view.board_before) if view.board else {}
     return ", ".join(f"{side} {hint.word}" for side, hint in hints.items())
+
+
+def _missing(view: TileView) -> str:
+    side = missing_side(view.hello, view.tile) if view.hello and view.tile else ""
+    return side and f"none at {side}"
 
 
 def _or_dash(value: object) -> str:

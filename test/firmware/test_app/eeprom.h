@@ -22,7 +22,7 @@ struct Memory {
 
     bool has_power() const { return power_fails == kNever || writes <= power_fails; }
 
-    std::array<uint8_t, 2 * kSettingsSize> bytes;
+    std::array<uint8_t, 2 * kSettingsSize * kBlocks> bytes;
     int worn = kNever;        // the byte at this address keeps what it has
     int power_fails = kNever; // in the write after so many
     Torn torn = Torn::Erased; // the byte that is then being written
@@ -75,13 +75,18 @@ class Eeprom {
 
 using Store = SettingsStore<Eeprom>;
 
-// The memory that has these settings twice.
+// The memory that has these settings, and the marking if there is one, twice.
 inline Memory memory_of(const Settings& settings) {
     uint8_t block[kSettingsSize];
-    write_settings(settings, block);
     Memory memory;
-    for (size_t i = 0; i < memory.bytes.size(); ++i) {
-        memory.bytes[i] = block[i % kSettingsSize];
+    for (uint8_t kind = 0; kind < kBlocks; ++kind) {
+        if (kind != 0 && settings.revision == 0) {
+            break; // not marked: erased
+        }
+        write_settings(static_cast<Block>(kind), settings, block);
+        for (size_t i = 0; i < 2 * kSettingsSize; ++i) {
+            memory.bytes[2 * kSettingsSize * kind + i] = block[i % kSettingsSize];
+        }
     }
     return memory;
 }

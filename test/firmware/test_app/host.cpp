@@ -72,9 +72,9 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     CHECK(tile.settings().updates == 30);
     CHECK(answer("SET,brightness,9").find("$ACK,7,SET,brightness,9*") == 0);
     CHECK(answer("SET,leds,0").find("$ACK,7,SET,leds,0*") == 0);
-    CHECK(tile.settings().leds_off == 1);
+    CHECK(tile.settings().leds == kLedsDark);
     CHECK(answer("SET,leds,1").find("$ACK,7,SET,leds,1*") == 0);
-    CHECK(tile.settings().leds_off == 0);
+    CHECK(tile.settings().leds == kLedsLinks);
     CHECK(answer("SET,id,9") == line_of("answer to a new id"));
     answer("SET,preset,default");
     CHECK(tile.settings().period_ms == kDefaults.period_ms);
@@ -84,6 +84,42 @@ TEST_CASE_FIXTURE(Fixture, "settings are kept, in force at once, and answered wi
     answer("SET,updates,65535");
     CHECK(tile.settings().updates == 65535);
     CHECK(memory.bytes == memory_of({9, 100, 65535, 9}).bytes);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a marking is kept for good, unless the command says that it is to be replaced") {
+    CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
+    CHECK(answer("MARK,2,1017") == line_of("answer to a marking"));
+    for (const char* other : {"MARK,3,1017", "MARK,2,1018"}) {
+        CHECK(answer(other) == line_of("a marking that is for good"));
+    }
+    CHECK(memory.bytes == memory_of({7, 100, 0, 255, 0, 2, 1017}).bytes);
+    CHECK(answer("CHIP").find(",2,1017*") != std::string::npos);
+    answer("SET,period,20");
+    CHECK(memory.bytes == memory_of({7, 20, 0, 255, 0, 2, 1017}).bytes);
+    CHECK(answer("MARK,3,65535,replace").find("$ACK,7,MARK,3,65535*") == 0);
+    CHECK(memory.bytes == memory_of({7, 20, 0, 255, 0, 3, 65535}).bytes);
+    for (const char* wrong : {"MARK", "MARK,2", "MARK,0,1", "MARK,256,1", "MARK,2,65536", "MARK,2,x",
+                              "MARK,2,1,now", "MARK,2,1,replace,", "MARK,,"}) {
+        CAPTURE(wrong);
+        CHECK(answer(wrong).find("$NAK,7,VALUE,MARK*") == 0);
+    }
+    CHECK(tile.settings().serial == 65535);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a marking that EEPROM does not keep is told, and the board stays unmarked") {
+    memory.worn = 2 * kSettingsSize + 4;
+    CHECK(answer("MARK,2,1017").find("$NAK,7,EEPROM,MARK*") == 0);
+    CHECK(tile.settings().revision == 0);
+    CHECK(answer("SET,period,20") == line_of("answer to a period"));
+    CHECK(answer("CHIP").find(",,*") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture, "the link LEDs show what is missing only where the model says it") {
+    CHECK(answer("SET,leds,2") == line_of("a value out of range"));
+    model.directions = kSides;
+    CHECK(answer("SET,leds,2").find("$ACK,7,SET,leds,2*") == 0);
+    CHECK(tile.settings().leds == kLedsMissing);
+    CHECK(answer("SET,leds,3") == line_of("a value out of range"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "what is not in range changes nothing") {
@@ -193,9 +229,41 @@ TEST_CASE_FIXTURE(Fixture, "a tile shows its class, blinks when told, and its li
     CHECK(appearance_of(tile, false, 256).leds == 0x9);
     CHECK(appearance_of(tile, false, 512).leds == 0x1);
     Settings dark = tile.settings();
-    dark.leds_off = 1;
+    dark.leds = kLedsDark;
     tile.apply(dark);
     CHECK(appearance_of(tile, false, 256).leds == 0);
+    dark.leds = kLedsMissing; // from EEPROM, written for another model: this one has no directions
+    tile.apply(dark);
+    CHECK(appearance_of(tile, false, 256).leds == 0x9);
+}
+
+TEST_CASE("a tile whose model has directions shows by a setting where a tile is missing") {
+    // Two classes; every update adds 1280 to the score of east, and takes as much from that of north.
+    const std::vector<int8_t> zeros(35, 0);
+    const std::vector<int16_t> growth = {0, -1280, 1280, 0, 0, 0, 0};
+    const LayerStream hidden1(35, 1, zeros.data(), growth.data());
+    const LayerStream hidden2(1, 1, zeros.data(), growth.data());
+    const LayerStream output(1, 7, zeros.data(), growth.data());
+    const std::vector<Look> looks(2);
+    const Model model = {
+        1, 2, {hidden1.layer(), hidden2.layer(), output.layer()}, FlashView<Look>(looks.data()), kSides};
+    Tile tile(model, {7, 100, 0, 255, kLedsMissing}, 0);
+    uint32_t now_ms = 0;
+    const auto update_until = [&](uint32_t number) {
+        while (tile.updates() < number) {
+            REQUIRE(++now_ms < 1000);
+            tile.tick(now_ms);
+        }
+    };
+    CHECK(tile.missing() == kSides);
+    update_until(3); // 3840, a message of 30
+    CHECK(tile.missing() == kSides);
+    CHECK(appearance_of(tile, false, 0).leds == 0);
+    update_until(4);
+    CHECK(tile.missing() == index_of(Side::East));
+    CHECK(appearance_of(tile, false, 0).leds == 1 << index_of(Side::East));
+    tile.apply({7, 100, 0, 255, kLedsLinks});
+    CHECK(appearance_of(tile, false, 0).leds == 0);
 }
 
 TEST_CASE_FIXTURE(Fixture, "brightness scales a colour") {

@@ -27,7 +27,7 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
     REQUIRE(bytes.size() == sizeof block);
     memcpy(block, bytes.data(), sizeof block);
     Settings settings = {99, 9999, 999, 9, 0};
-    if (!parse_settings(block, &settings)) {
+    if (!parse_settings(Block::Settings, block, &settings)) {
         CHECK(settings.tile_id == 99);
         CHECK(settings.period_ms == 9999);
         CHECK(settings.updates == 999);
@@ -36,7 +36,9 @@ std::string meaning_of(const std::vector<uint8_t>& bytes) {
     }
     return std::to_string(settings.tile_id) + " " + std::to_string(settings.period_ms) + " " +
            std::to_string(settings.updates) + " " + std::to_string(settings.brightness) +
-           (settings.leds_off ? " 0" : " 1");
+           (settings.leds == kLedsDark    ? " 0"
+            : settings.leds == kLedsLinks ? " 1"
+                                          : " 2");
 }
 
 } // namespace
@@ -55,15 +57,15 @@ TEST_CASE("writing gives the block of every case that is not ignored") {
         uint8_t block[kSettingsSize];
         memcpy(block, bytes.data(), sizeof block);
         Settings settings;
-        if (parse_settings(block, &settings)) {
+        if (parse_settings(Block::Settings, block, &settings)) {
             memset(block, 0x55, sizeof block);
-            write_settings(settings, block);
+            write_settings(Block::Settings, settings, block);
             CHECK(std::vector<uint8_t>(block, block + sizeof block) == bytes);
             ++written;
         }
         CHECK(is_blank(block) == (std::string(settings_case.name) == "erased"));
     }
-    CHECK(written == 4);
+    CHECK(written == 5);
 }
 
 TEST_CASE("a block with any one bit flipped is ignored") {
@@ -74,6 +76,23 @@ TEST_CASE("a block with any one bit flipped is ignored") {
         damaged[bit / 8] ^= 1 << bit % 8;
         CHECK(meaning_of(damaged) == "ignored");
     }
+}
+
+TEST_CASE("a marking has a block of its own, which is told from that of settings") {
+    const Settings marked = {7, 100, 0, 255, 0, 2, 1017};
+    uint8_t block[kSettingsSize];
+    write_settings(Block::Marking, marked, block);
+    Settings found = {99, 9999, 999, 9, 1, 0, 0};
+    CHECK_FALSE(parse_settings(Block::Settings, block, &found));
+    REQUIRE(parse_settings(Block::Marking, block, &found));
+    CHECK(found.revision == 2);
+    CHECK(found.serial == 1017);
+    CHECK(found.tile_id == 99);
+    CHECK(found.period_ms == 9999);
+    CHECK(std::vector<uint8_t>(block, block + sizeof block) ==
+          test::bytes_of_hex("54420202f90300000000f7eb"));
+    write_settings(Block::Settings, marked, block);
+    CHECK_FALSE(parse_settings(Block::Marking, block, &found));
 }
 
 TEST_CASE("a button that bounces counts once per press") {

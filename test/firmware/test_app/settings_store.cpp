@@ -26,18 +26,18 @@ bool same(const Settings& a, const Settings& b) {
            a.brightness == b.brightness;
 }
 
-void write(Memory& memory, const Settings& settings) {
+void write(Memory& memory, const Settings& settings, Block kind = Block::Settings) {
     Store store{Eeprom(&memory)};
-    store.write(settings);
+    store.write(kind, settings);
     while (store.writing()) {
     }
 }
 
 // Starts a tile, which has power as long as `memory` says; returns what it found.
-Settings start(Memory& memory) {
+Settings start(Memory& memory, Block kind = Block::Settings) {
     Store store{Eeprom(&memory)};
     Settings settings = kDefaults;
-    CHECK(store.load(&settings) == Store::Found::Settings);
+    CHECK(store.load(kind, &settings) == Store::Found::Settings);
     while (store.writing()) {
     }
     return settings;
@@ -71,11 +71,11 @@ TEST_CASE("what was written is found at the next start, and costs no more writes
 TEST_CASE("a blank EEPROM has nothing, a damaged one is told from it, and neither changes the settings") {
     Memory memory;
     Settings settings = kDefaults;
-    CHECK(Store{Eeprom(&memory)}.load(&settings) == Store::Found::Nothing);
+    CHECK(Store{Eeprom(&memory)}.load(Block::Settings, &settings) == Store::Found::Nothing);
     memory.bytes = memory_of(kOld).bytes;
     memory.bytes[3] ^= 1;
     memory.bytes[kSettingsSize + 5] ^= 1;
-    CHECK(Store{Eeprom(&memory)}.load(&settings) == Store::Found::Damage);
+    CHECK(Store{Eeprom(&memory)}.load(Block::Settings, &settings) == Store::Found::Damage);
     CHECK(same(settings, kDefaults));
     CHECK(memory.writes == 0);
 }
@@ -139,17 +139,61 @@ TEST_CASE("a worn byte in either block is seen, and the old settings written bac
         Memory memory = memory_of(kOld);
         memory.worn = worn;
         Store store{Eeprom(&memory)};
-        store.write(kNew);
+        store.write(Block::Settings, kNew);
         while (store.writing()) {
         }
         const bool carries = memory.bytes != memory_of(kNew).bytes;
         CHECK(store.verify() == !carries);
         if (carries) {
-            store.write(kOld);
+            store.write(Block::Settings, kOld);
             while (store.writing()) {
             }
             CHECK(store.verify());
             CHECK(same(start(memory), kOld));
         }
+    }
+}
+
+TEST_CASE("a marking is written beside the settings, and old or new whenever the power fails") {
+    const Settings old = {7, 0x0102, 0x0304, 40, 0, 1, 0x0506},
+                   marked = {7, 0x0102, 0x0304, 40, 0, 2, 0x1516};
+    constexpr int kMarkingWritten = 2 * 5; // revision, serial number, CRC
+    bool is_new = false;
+    for (int at = 0; at < kMarkingWritten; ++at) {
+        for (const Torn torn : kTorn) {
+            CAPTURE(at);
+            Memory memory =
+                cut_off(memory_of(old), at, torn, [&](Memory& cut) { write(cut, marked, Block::Marking); });
+            const Settings found = start(memory, Block::Marking);
+            const Settings& whole = found.revision == marked.revision ? marked : old;
+            CHECK(found.revision == whole.revision);
+            CHECK(found.serial == whole.serial);
+            CHECK((!is_new || found.revision == marked.revision));
+            is_new = found.revision == marked.revision;
+            CHECK(start(memory, Block::Marking).revision == whole.revision);
+            CHECK(same(start(memory), old));
+        }
+    }
+    CHECK(is_new);
+}
+
+TEST_CASE("a first marking is there or not, and damage of one kind of block harms no other") {
+    const Settings marked = {7, 0x0102, 0x0304, 40, 0, 2, 0x1516};
+    Memory blank = memory_of(kOld);
+    write(blank, marked, Block::Marking);
+    CHECK(blank.bytes == memory_of(marked).bytes);
+    for (int at = 0; at < kSettingsSize * 2; ++at) {
+        Memory memory = cut_off(memory_of(kOld), at, Torn::Erased,
+                                [&](Memory& cut) { write(cut, marked, Block::Marking); });
+        memory.busy_for = 0;
+        Settings found = kDefaults;
+        Store store{Eeprom(&memory)};
+        if (store.load(Block::Marking, &found) == Store::Found::Settings) {
+            CHECK(found.serial == 0x1516);
+        } else {
+            CHECK(found.revision == 0);
+        }
+        CHECK(store.load(Block::Settings, &found) == Store::Found::Settings);
+        CHECK(same(found, kOld));
     }
 }

@@ -56,6 +56,14 @@ TEST_CASE_FIXTURE(Fixture, "hello says what the tile is") {
     CHECK(text_of(sentence) == line_of("hello of tile 7"));
 }
 
+TEST_CASE_FIXTURE(Fixture, "hello says whether the model has directions") {
+    const Model directed = {0xBEEF, 2, model.network, model.looks, kSides};
+    const Tile tile(directed, {7, 2000, 30, 128}, 0);
+    Sentence sentence;
+    write_hello(tile, {0x0A, 0x00C0FFEE, {}}, &sentence);
+    CHECK(text_of(sentence) == line_of("hello of a tile with directions"));
+}
+
 TEST_CASE_FIXTURE(Fixture, "a tile that shows nothing yet says so") {
     const Tile tile(model, {0, 100, 0, 255}, 0);
     Sentence sentence;
@@ -114,10 +122,13 @@ TEST_CASE_FIXTURE(Fixture, "a tile tells its times, its stack and what it droppe
     CHECK(text_of(sentence) == line_of("time"));
 }
 
-TEST_CASE_FIXTURE(Fixture, "a tile tells its fuses") {
+TEST_CASE_FIXTURE(Fixture, "a tile tells its fuses, and its board's marking") {
     Sentence sentence;
     write_chip(Tile(model, {7, 100, 0, 255}, 0), {0, 0, {0xFF, 0xD8, 0xFD, 0xCF}}, &sentence);
     CHECK(text_of(sentence) == line_of("chip"));
+    const Settings marked = {7, 100, 0, 255, 0, 2, 1017};
+    write_chip(Tile(model, marked, 0), {0, 0, {0xFF, 0xD8, 0xFD, 0xCF}}, &sentence);
+    CHECK(text_of(sentence) == line_of("chip on a marked board"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "a tile tells its supply, framing errors and lines that stay low") {

@@ -226,6 +226,15 @@ TEST_CASE("a decision says how far the best class is ahead of the second best, r
     CHECK(margin_of({5}) == Decision::kNoMargin);
 }
 
+TEST_CASE("a tile is missing on the side with the greatest score above one half, the first among equals") {
+    const auto side_of = [](const std::vector<int8_t>& scores) { return missing_side(scores.data()); };
+    CHECK(side_of({0, 0, 0, 0}) == kSides);
+    CHECK(side_of({32, 32, -127, 32}) == kSides);
+    CHECK(side_of({33, 32, 0, 0}) == index_of(Side::North));
+    CHECK(side_of({40, 70, 70, 60}) == index_of(Side::East));
+    CHECK(side_of({-127, -127, -127, 127}) == index_of(Side::West));
+}
+
 TEST_CASE("the exported model is whole") {
     CHECK(model::kModel.id == model::kModelId);
     CHECK(model::kModel.network.channels() == model::kChannels);

@@ -3,6 +3,7 @@
 import { TilencaError } from "../module.js";
 import { EAST, SOUTH } from "../sides.js";
 import { Chance } from "./chance.js";
+import { MAX_PLACE } from "./commands.js";
 import { Faults, endsOf, parseFault } from "./faults.js";
 import { setCommand, settingsBlock } from "./settings.js";
 import { OFFSETS, OPPOSITE, SIDES } from "./sides.js";
@@ -103,13 +104,9 @@ export class Board {
 
   /** Takes a tile away, with its cables. @param {number} tile */
   pull(tile) {
-    for (const link of this.cables.filter(([one, , other]) => one === tile || other === tile)) {
-      this.array.unlink(link[0], link[1]);
-      this.traffic.forget(link);
-      this.cables.splice(this.cables.indexOf(link), 1);
-      for (const end of endsOf(link)) this.faults.cut.delete(end.join());
-    }
+    this.#unplug(this.cables.filter(([one, , other]) => one === tile || other === tile));
     this.array.tile(tile).powered = false;
+    this.faults.turn(tile, false);
     this.places.delete(tile);
   }
 
@@ -121,6 +118,24 @@ export class Board {
     this.pull(tile);
     this.array.tile(tile).powered = true;
     this.#plugIn(tile, place);
+  }
+
+  /** Moves tiles together: they keep their power and the cables between them, and run on. @param {number[]} tiles @param {number} rows @param {number} cols */
+  shift(tiles, rows, cols) {
+    const there = new Map(tiles.map((tile) => {
+      const [row, col] = /** @type {Place} */ (this.places.get(tile));
+      return [tile, /** @type {Place} */ ([row + rows, col + cols])];
+    }));
+    for (const place of there.values()) {
+      const other = this.tileAt(place);
+      if (other !== undefined && !there.has(other)) throw new TilencaError("other tiles lie there; choose empty places");
+    }
+    if ([...there.values()].flat().some((number) => Math.abs(number) > MAX_PLACE)) {
+      throw new TilencaError(`the board ends there; rows and columns are -${MAX_PLACE} to ${MAX_PLACE}`);
+    }
+    this.#unplug(this.cables.filter(([one, , other]) => there.has(one) !== there.has(other)));
+    for (const [tile, place] of there) this.places.set(tile, place);
+    for (const tile of [...there.keys()].sort((one, other) => one - other)) this.#join(tile, there);
   }
 
   /** Makes another drawing of the running tiles. @param {readonly Place[]} cells in reading order */
@@ -144,8 +159,8 @@ export class Board {
     const isHere = (/** @type {Link} */ link) => endsOf(link).some(([one, at]) => one === tile && at === side);
     const link = this.cables.find(isHere);
     if (link === undefined) throw new TilencaError(`tile ${tile + 1} has no neighbour in the ${SIDES[side]}`);
-    this.faults.connect([link[0], link[1]], isWhole);
     if (isWhole) this.faults.cut.delete(`${link[2]},${link[3]}`); // a fault may have named its other end
+    this.faults.connect([link[0], link[1]], isWhole);
   }
 
   // --- moments ---
@@ -167,12 +182,31 @@ export class Board {
     this.traffic.restart(moment.cables);
   }
 
+  /** @param {readonly Link[]} links */
+  #unplug(links) {
+    for (const link of links) {
+      this.array.unlink(link[0], link[1]);
+      this.traffic.forget(link);
+      this.cables.splice(this.cables.indexOf(link), 1);
+      for (const end of endsOf(link)) this.faults.cut.delete(end.join());
+    }
+  }
+
   /** @param {number} tile @param {Place} place */
   #plugIn(tile, place) {
     this.places.set(tile, place);
+    this.#join(tile, new Map());
+  }
+
+  /**
+   * Plugs in the cables to its neighbours, but to those that are joined with it already.
+   * @param {number} tile @param {Map<number, Place>} joined
+   */
+  #join(tile, joined) {
+    const place = /** @type {Place} */ (this.places.get(tile));
     for (let side = 0; side < SIDES.length; side++) {
       const other = this.tileAt(beside(place, side));
-      if (other === undefined) continue;
+      if (other === undefined || joined.has(other)) continue;
       /** @type {Link} */
       const link = side === EAST || side === SOUTH
         ? [tile, side, other, OPPOSITE[side]]

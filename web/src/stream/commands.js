@@ -11,6 +11,8 @@ const MAX_NAME = 256;
 const MAX_SPEED = 1024;
 const MIN_SPEED = 1e-5;
 const MAX_SECONDS = 86_400;
+const MOST_INSTRUCTIONS = 1000;
+const MAX_SKEW_PPM = 100_000;
 
 /** @typedef {{ do: string, [field: string]: any }} Command */
 /** Says what is wrong; "" for nothing. @typedef {(value: unknown) => string} Check */
@@ -47,6 +49,14 @@ const place = whole(-MAX_PLACE, MAX_PLACE);
 /** @type {Check} */
 const faults = (value) => {
   if (!Array.isArray(value) || value.length > MOST_FAULTS) return `must be a list of at most ${MOST_FAULTS} faults`;
+  return value.map(text).find(Boolean) ?? "";
+};
+
+const distance = whole(-2 * MAX_PLACE, 2 * MAX_PLACE);
+
+/** @type {Check} */
+const ports = (value) => {
+  if (!Array.isArray(value) || value.length > MOST_TILES) return `must be a list of at most ${MOST_TILES} ports`;
   return value.map(text).find(Boolean) ?? "";
 };
 
@@ -105,13 +115,17 @@ const KINDS = {
   rest: { on: [truth] },
   step: { seconds: [number(16e-6, 10)] },
   seek: { seconds: [number(0, MAX_SECONDS)] },
+  instruct: { port: [text], count: [whole(0, MOST_INSTRUCTIONS), 1] },
   put: { row: [place], col: [place] },
   pull: { port: [text] },
   move: { port: [text], row: [place], col: [place] },
+  shift: { ports: [ports], rows: [distance], cols: [distance] },
   arrange: { cells: [cells] },
   cut: { port: [text], side: [side], on: [truth, true] },
   power: { port: [text], on: [truth] },
   freeze: { port: [text], on: [truth, true] },
+  turn: { port: [text], on: [truth, true] },
+  skew: { port: [text], ppm: [number(-MAX_SKEW_PPM, MAX_SKEW_PPM)] },
   reset: { port: [text] },
   noise: { loss: [number(0, 1)] },
   blink: { port: [text], seconds: [whole(0, 60), 5] },
@@ -122,7 +136,7 @@ const KINDS = {
 
 /** Those that change something. */
 const HANDS = [
-  "put", "pull", "move", "arrange", "cut", "power", "freeze", "reset", "noise", "blink", "restart", "set",
+  "put", "pull", "move", "shift", "arrange", "cut", "power", "freeze", "turn", "skew", "reset", "noise", "blink", "restart", "set",
 ];
 
 /**

@@ -7,12 +7,12 @@ import { SIDES } from "./sides.js";
 const EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2";
 /** With the most each can be. */
 const LINK_KINDS = new Map([["loss", 1], ["flip", 1], ["delay", 1000]]);
-const TILE_KINDS = new Map([["drift", 10000], ["adc", 100], ["supply", 5.5]]);
-const LEAST_V = 1.8, USUAL_V = 5;
-const MOMENT_KINDS = ["cut", "off", "remove", "reset"];
+const TILE_KINDS = new Map([["drift", 10000], ["adc", 100], ["supply", 5.5], ["skew", 100_000]]);
+const SIGNED_KINDS = ["skew"];
+const LEAST_V = 1.8, USUAL_V = 5, MOMENT_KINDS = ["cut", "off", "remove", "reset", "turn"];
 const ENDLESS = ["remove", "reset", "adc", "drift"];
 const SHAPE = /^([a-z]+)(?:=([^@:]+))?(?:@([^:]+))?(?::([^-]+)(?:-(.+))?)?$/;
-const NUMBER = /^\s*\+?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*$/i;
+const NUMBER = /^\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*$/i;
 
 /**
  * One direction: the tile, counted from 0, and the side that it leaves.
@@ -24,10 +24,10 @@ const NUMBER = /^\s*\+?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*$/i;
 /** @param {string} text @param {string} fact */
 const complaint = (text, fact) => new TilencaError(`--fault '${text}': ${fact}; for example ${EXAMPLE}`);
 
-/** @param {string} text @param {string} part @param {string} fact */
-function numberIn(text, part, fact) {
+/** @param {string} text @param {string} part @param {string} fact @param {boolean} [isSigned] */
+function numberIn(text, part, fact, isSigned = false) {
   const value = NUMBER.test(part) ? Number(part) : NaN;
-  if (!Number.isFinite(value)) throw complaint(text, `'${part}' is no ${fact}`);
+  if (!Number.isFinite(value) || (value < 0 && !isSigned)) throw complaint(text, `'${part}' is no ${fact}`);
   return value;
 }
 
@@ -49,8 +49,9 @@ export function parseFault(text) {
   if ((most === undefined) !== (valueText === undefined)) {
     throw complaint(text, `${kind} takes ${most === undefined ? "no" : "a"} number`);
   }
-  const value = valueText === undefined ? 0 : numberIn(text, valueText, "number");
-  if (most !== undefined && value > most) throw complaint(text, `${kind} is 0 to ${most}`);
+  const isSigned = SIGNED_KINDS.includes(kind);
+  const value = valueText === undefined ? 0 : numberIn(text, valueText, "number", isSigned);
+  if (most !== undefined && Math.abs(value) > most) throw complaint(text, `${kind} is ${isSigned ? -most : 0} to ${most}`);
   if (kind === "supply" && value < LEAST_V) throw complaint(text, `supply is ${LEAST_V} to ${most} V`);
   const fromS = fromText === undefined ? 0 : numberIn(text, fromText, "time in seconds");
   const toS = toText === undefined ? null : numberIn(text, toText, "time in seconds");
@@ -73,6 +74,10 @@ export function ifThere(act) {
 export class Faults {
   /** The ends at which cables are cut now, "tile,side". @type {Set<string>} */
   cut = new Set();
+  /** The tiles that lie turned by 90 degrees now. @type {Set<number>} */
+  turned = new Set();
+  /** By how much the clocks of tiles are too fast now, in ppm. @type {Map<number, number>} */
+  skewed = new Map();
   /** What all cables have now. @type {Map<string, number>} */
   #everywhere = new Map();
   /** @type {{ timeS: number, order: number, act: () => void }[]} */
@@ -94,12 +99,17 @@ export class Faults {
   /** A copy of all that is planned and stands. */
   save() {
     const spoilt = new Map([...this.#spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
-    return { cut: new Set(this.cut), everywhere: new Map(this.#everywhere), due: [...this.#due], spoilt };
+    return {
+      cut: new Set(this.cut), turned: new Set(this.turned), skewed: new Map(this.skewed),
+      everywhere: new Map(this.#everywhere), due: [...this.#due], spoilt,
+    };
   }
 
   /** Knows again what a copy says; the array's own snapshot has the faults themselves. @param {ReturnType<Faults["save"]>} moment */
   restore(moment) {
     this.cut = new Set(moment.cut);
+    this.turned = new Set(moment.turned);
+    this.skewed = new Map(moment.skewed);
     this.#everywhere = new Map(moment.everywhere);
     this.#due = [...moment.due];
     this.#spoilt = new Map([...moment.spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
@@ -123,11 +133,12 @@ export class Faults {
         this.array.tile(tile).powered = on;
       });
       this.#planSwitch(spec, setPower, false);
+    } else if (kind === "turn") {
+      this.#planSwitch(spec, this.#tiles(spec).map((tile) => (/** @type {boolean} */ on) => this.turn(tile, on)), true);
     } else {
       for (const tile of this.#tiles(spec)) {
         this.#plan(spec.fromS, () => this.#act(spec, tile));
-        // Of these, only a supply has an end.
-        if (spec.toS !== null) this.#plan(spec.toS, () => this.array.tile(tile).setSupply(USUAL_V));
+        if (spec.toS !== null) this.#plan(spec.toS, () => this.#end(kind, tile));
       }
     }
   }
@@ -154,7 +165,17 @@ export class Faults {
     else if (spec.kind === "remove") this.array.removeTile(index);
     else if (spec.kind === "adc") tile.setAdcNoise(spec.value, this.seed);
     else if (spec.kind === "supply") tile.setSupply(spec.value);
-    else tile.setDrift(spec.value * (spec.where ? 1 : new Chance(`${this.seed} drift ${index}`).uniform(-1, 1)));
+    else {
+      const rate = spec.value * (spec.where ? 1 : new Chance(`${this.seed} ${spec.kind} ${index}`).uniform(-1, 1));
+      if (spec.kind === "skew") this.skew(index, rate);
+      else tile.setDrift(rate);
+    }
+  }
+
+  /** Ends a fault of tiles that has an end. @param {string} kind @param {number} tile */
+  #end(kind, tile) {
+    if (kind === "skew") this.skew(tile, 0);
+    else this.array.tile(tile).setSupply(USUAL_V);
   }
 
   /** Runs the array for a while, and injects the faults that fall due. @param {number} seconds */
@@ -166,6 +187,11 @@ export class Faults {
       due.act();
     }
     if (endS > this.array.timeS) this.array.run(endS - this.array.timeS);
+  }
+
+  /** The time of the next one that is planned. */
+  get nextS() {
+    return this.#due[0]?.timeS ?? Infinity;
   }
 
   // --- what they do ---
@@ -192,16 +218,34 @@ export class Faults {
   plugIn(link) {
     for (const end of endsOf(link)) this.#spoilt.delete(end.join());
     for (const [kind, value] of this.#everywhere) this.#spoil(endsOf(link), kind, value);
+    this.#join(link);
   }
 
   /** Cuts the cable at an end, or mends it. @param {End} end @param {boolean} on */
   connect([tile, side], on) {
-    ifThere(() => {
-      if (on) this.array.mend(tile, side);
-      else this.array.cut(tile, side);
-      if (on) this.cut.delete(`${tile},${side}`);
-      else this.cut.add(`${tile},${side}`);
-    });
+    for (const link of this.links) {
+      if (!endsOf(link).some(([one, at]) => one === tile && at === side)) continue;
+      this.cut[on ? "delete" : "add"](`${tile},${side}`);
+      this.#join(link);
+    }
+  }
+
+  /** Turns a tile by 90 degrees, or back. @param {number} tile @param {boolean} on */
+  turn(tile, on) {
+    this.turned[on ? "add" : "delete"](tile);
+    for (const link of this.links) if (link[0] === tile || link[2] === tile) this.#join(link);
+  }
+
+  /** From now on a tile's clock is so much faster than it was made. @param {number} tile @param {number} ppm */
+  skew(tile, ppm) {
+    this.array.tile(tile).setSkew(ppm);
+    this.skewed.set(tile, ppm);
+  }
+
+  /** Lets a cable carry bytes, unless it is cut or one of its tiles is turned. @param {Link} link */
+  #join(link) {
+    const isWhole = !endsOf(link).some((end) => this.cut.has(end.join())) && !this.turned.has(link[0]) && !this.turned.has(link[2]);
+    ifThere(() => (isWhole ? this.array.mend(link[0], link[1]) : this.array.cut(link[0], link[1])));
   }
 
   // --- where they do it ---

@@ -2,17 +2,19 @@
 // `tilenca.page.emulated`: the same commands give the same events (docs/PROTOCOL.md section 7).
 import { TilencaError } from "../module.js";
 import { Board } from "./board.js";
-import { MOST_TILES, checked } from "./commands.js";
+import { checked } from "./commands.js";
 import { sorted } from "./faults.js";
+import { doByHand, tileOf } from "./hands.js";
 import { Pace, QUANTUM_S } from "./pace.js";
-import { blinkCommand, restartCommand, setCommand } from "./settings.js";
-import { SIDES } from "./sides.js";
-import { Teller, VOICE_BYTES, event, portName, refused } from "./teller.js";
+import { Stepper } from "./stepper.js";
+import { Teller, VOICE_BYTES, event, refused } from "./teller.js";
 import { Timeline } from "./timeline.js";
 
 // Up to this speed there is time to look at single frames on the cables.
 const FRAMES_SPEED = 0.3;
 const UNKNOWN = "-";
+// An instruction after which a tile sleeps ends with its waking, which no planned fault may overtake.
+const LONGEST_STEP_S = 0.1;
 
 /** @typedef {import("./board.js").Place} Place */
 /** @typedef {import("./commands.js").Command} Command */
@@ -21,7 +23,8 @@ const UNKNOWN = "-";
 /**
  * What the page is offered: made by `python -m release.page_bundle`.
  * @typedef {object} Offer
- * @property {StreamEvent & { drawings: { name: string, rows: string[] }[] }} stream the first event
+ * @property {StreamEvent & { drawings: { name: string, rows: string[] }[], model?: string, models?: { name: string, id: string }[] }} stream
+ *   the first event
  * @property {number | null} period_ms of the image's settings
  * @property {number} updates of the same
  */
@@ -37,6 +40,8 @@ export class EmulatedSource {
   #events = [];
   /** Of the board, as long as there is one. @type {Teller} */
   #teller = /** @type {any} */ (null);
+  /** Of its array. @type {Stepper} */
+  #stepper = /** @type {any} */ (null);
   /** @type {Timeline<Moment, Command>} */
   #timeline = new Timeline();
 
@@ -80,6 +85,9 @@ export class EmulatedSource {
           this.#pace.set(this.#pace.speed, true);
         }
         break;
+      case "instruct":
+        this.#instruct(command.port, command.count);
+        break;
       case "seek":
         this.#seek(command.seconds);
         break;
@@ -92,50 +100,12 @@ export class EmulatedSource {
   /** @param {Command} command */
   #layHandsOn(command) {
     if (!this.#board) throw new TilencaError("nothing runs yet; open a drawing first");
-    this.#do(this.#board, command);
+    this.#release();
+    doByHand(this.#board, command);
     this.#timeline.note(this.#board.array.timeS, command);
     this.#keep(this.#board);
     this.#tellPace(); // another future begins
     this.#tell(this.#board.array.timeS, { deed: command });
-  }
-
-  /** What a hand does, now or once more in a past that is run again. @param {Board} board @param {Command} command */
-  #do(board, command) {
-    switch (command.do) {
-      case "put":
-        if (board.places.size >= MOST_TILES) {
-          throw new TilencaError(`the board has ${MOST_TILES} tiles, which is all; take one out first`);
-        }
-        return board.put([command.row, command.col]);
-      case "pull":
-        return board.pull(this.#tile(command.port));
-      case "move":
-        return board.move(this.#tile(command.port), [command.row, command.col]);
-      case "arrange":
-        return board.arrange(sorted(command.cells));
-      case "cut":
-        return board.connect(this.#tile(command.port), SIDES.indexOf(command.side), !command.on);
-      case "power":
-        board.array.tile(this.#tile(command.port)).powered = command.on;
-        return undefined;
-      case "freeze":
-        return board.freeze(this.#tile(command.port), command.on);
-      case "reset":
-        return board.array.tile(this.#tile(command.port)).reset();
-      case "noise":
-        return board.faults.spoilAll("loss", command.loss);
-      case "blink":
-        return board.tell(this.#tile(command.port), blinkCommand(command.seconds));
-      case "restart":
-        return board.tell(this.#tile(command.port), restartCommand());
-      case "set": {
-        const tiles = command.port === null ? [...board.places.keys()].sort((one, other) => one - other) : [this.#tile(command.port)];
-        for (const tile of tiles) board.tell(tile, setCommand(command.name, command.value));
-        return undefined;
-      }
-      default:
-        throw new TilencaError(`${command.do}: whoever stands before the source takes it`);
-    }
   }
 
   /**
@@ -144,7 +114,7 @@ export class EmulatedSource {
    */
   #doPlanned(board, planned) {
     try {
-      this.#do(board, planned.deed);
+      doByHand(board, planned.deed);
     } catch (error) {
       if (!(error instanceof TilencaError)) throw error;
       this.#timeline.forget(planned);
@@ -152,10 +122,27 @@ export class EmulatedSource {
     }
   }
 
-  /** The tile of that port, which lies on the board. @param {string} port */
-  #tile(port) {
-    for (const tile of this.#board?.places.keys() ?? []) if (portName(tile) === port) return tile;
-    throw new TilencaError(`no tile ${port} lies on the board`);
+  /** @param {string} port @param {number} count */
+  #instruct(port, count) {
+    const board = this.#board;
+    if (!board) throw new TilencaError("nothing runs yet; open a drawing first");
+    if (!this.#pace.paused) throw new TilencaError("single instructions are for a run that stands; pause it first");
+    const { array } = board;
+    const tile = tileOf(board, port);
+    if (!array.tile(tile).powered) throw new TilencaError(`${port} has no power, and executes nothing; switch it on first`);
+    const aheadS = array.timeS + LONGEST_STEP_S;
+    if (count && (board.faults.nextS <= aheadS || this.#timeline.deedsIn(array.timeS, aheadS).length > 0)) {
+      throw new TilencaError("a planned fault or deed is about to happen; let time go past it, by one update");
+    }
+    this.#stepper.step(tile, count);
+    this.#timeline.reached(array.timeS);
+    this.#look();
+    this.#events.push(this.#stepper.tell(tile));
+  }
+
+  /** Lets a tile go on that was halted between two instructions, up to the present of the others. */
+  #release() {
+    if (this.#board && this.#stepper.release()) this.#passTime(this.#board, QUANTUM_S);
   }
 
   /** @param {Command} wanted */
@@ -175,6 +162,7 @@ export class EmulatedSource {
     this.close();
     this.#board = board;
     this.#teller = new Teller(board);
+    this.#stepper = new Stepper(board.array);
     this.#timeline = new Timeline(deeds);
     this.#pace = new Pace(wanted.speed, wanted.paused, wanted.until_s);
     this.#events = [event(0, { run: { seed: wanted.seed, shape: name, tiles: cells.length } })];
@@ -215,6 +203,7 @@ export class EmulatedSource {
   /** @param {number} seconds */
   #run(seconds) {
     if (seconds <= 0 || !this.#board) return;
+    this.#stepper.release();
     const { array } = this.#board;
     const [startedS, beforeS] = [this.clock(), array.timeS];
     try {
@@ -252,6 +241,7 @@ export class EmulatedSource {
   #seek(wantedS) {
     const board = this.#board;
     if (!board) throw new TilencaError("nothing runs yet; open a drawing first");
+    this.#release();
     const [fromS, timeS] = [board.array.timeS, Math.min(wantedS, this.#timeline.endS)];
     const nearest = this.#timeline.nearest(timeS);
     if (!(nearest.timeS <= fromS && fromS <= timeS)) { // or it is nearer to run on

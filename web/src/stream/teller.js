@@ -6,9 +6,10 @@ import { SIDES } from "./sides.js";
 
 const NO_POWER = "no power";
 const MOST_REFUSAL = 300; // characters
+const UNSPOILT = JSON.stringify({ turned: false, skew: 0 });
 
 /** @typedef {{ time: number, [subject: string]: unknown }} StreamEvent */
-/** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, display: string }} Seen */
+/** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, fault: string, display: string }} Seen */
 /** What a tile has said: the beginning of its next line, and its last line of each kind. @typedef {{ lines: Lines, last: Map<string, StreamEvent> }} Voice */
 
 /** @param {number} time @param {Record<string, unknown>} about @returns {StreamEvent} */
@@ -45,11 +46,11 @@ export class Teller {
 
   /** What lies where, has power, and is joined, as far as it is news. */
   places() {
-    const { array, places, cut } = this.board;
+    const { array, places, cut, faults } = this.board;
     const now = array.timeS;
     /** @type {StreamEvent[]} */
     const events = [];
-    while (this.#seen.length < array.size) this.#seen.push({ place: "", powered: null, display: "" });
+    while (this.#seen.length < array.size) this.#seen.push({ place: "", powered: null, fault: UNSPOILT, display: "" });
     while (this.#voices.length < array.size) this.#voices.push({ lines: new Lines(), last: new Map() });
     this.#seen.forEach((seen, index) => {
       const [port, place, { powered }] = [portName(index), places.get(index), array.tile(index)];
@@ -60,6 +61,11 @@ export class Teller {
       if (place && powered !== seen.powered) {
         seen.powered = powered;
         events.push(event(now, { port, open: powered, reason: powered ? "" : NO_POWER }));
+      }
+      const fault = { turned: faults.turned.has(index), skew: Number((faults.skewed.get(index) ?? 0).toFixed(3)) };
+      if (JSON.stringify(fault) !== seen.fault) {
+        seen.fault = JSON.stringify(fault);
+        events.push(event(now, { port, fault }));
       }
     });
     const [before, after] = [this.#cut, cut].map((links) => new Set(links.map(String)));

@@ -20,12 +20,21 @@ async function fetched(name) {
   return response;
 }
 
+/** What there is to see of the model that the worker's address asks for by name or id, and its firmware. */
+async function chosen() {
+  const wanted = new URL(import.meta.url).searchParams.get("model") ?? "";
+  /** @type {import("./source.js").Offer} */
+  const first = await (await fetched("offer.json")).json();
+  const models = first.stream.models ?? [];
+  const name = models.find((model) => wanted && [model.name, model.id].includes(wanted))?.name ?? first.stream.model;
+  if (name === first.stream.model) return { offer: first, image: await (await fetched("firmware.elf")).arrayBuffer() };
+  const path = `models/${encodeURIComponent(name ?? "")}`;
+  const [offer, image] = await Promise.all([fetched(`${path}.json`), fetched(`${path}.elf`)]);
+  return { offer: /** @type {import("./source.js").Offer} */ (await offer.json()), image: await image.arrayBuffer() };
+}
+
 async function ready() {
-  const [emulator, offer, image] = await Promise.all([
-    Emulator.load(),
-    fetched("offer.json").then((response) => response.json()),
-    fetched("firmware.elf").then((response) => response.arrayBuffer()),
-  ]);
+  const [emulator, { offer, image }] = await Promise.all([Emulator.load(), chosen()]);
   const firmware = { name: "firmware.elf", bytes: new Uint8Array(image) };
   return new EmulatedSource(emulator, firmware, offer, () => performance.now() / 1000);
 }

@@ -169,6 +169,8 @@ TILENCA_API int tilenca_tile_set_power(tilenca_array* array, unsigned tile, int 
 TILENCA_API int tilenca_tile_is_powered(tilenca_array* array, unsigned tile);
 // From now on the clock error grows by so much a second.
 TILENCA_API int tilenca_tile_set_drift(tilenca_array* array, unsigned tile, double ppm_per_s);
+// From now on it is by so much faster than its error and drift make it; at most 100000 either way.
+TILENCA_API int tilenca_tile_set_skew(tilenca_array* array, unsigned tile, double ppm);
 // Bytes, as a programmer sets them; the chip starts anew.
 TILENCA_API int tilenca_tile_set_fuses(tilenca_array* array, unsigned tile, unsigned low, unsigned high,
                                        unsigned extended, unsigned lock);

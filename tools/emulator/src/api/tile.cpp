@@ -84,6 +84,13 @@ int tilenca_tile_set_drift(tilenca_array* array, unsigned tile, double ppm_per_s
     });
 }
 
+int tilenca_tile_set_skew(tilenca_array* array, unsigned tile, double ppm) {
+    return attempted([&] {
+        check_range("a clock's skew in ppm", ppm, -1e5, 1e5);
+        tile_of(array, tile).clock().set_skew(ppm * 1e-6, array->array.now());
+    });
+}
+
 int tilenca_tile_set_fuses(tilenca_array* array, unsigned tile, unsigned low, unsigned high,
                            unsigned extended, unsigned lock) {
     return attempted([&] {

@@ -37,7 +37,12 @@ class Clock {
         drift_ = drift;
         drift_steps_ = std::floor(now / kDriftTicks);
     }
-    double error() const { return error_; }
+    double error() const { return error_ + skew_; }
+    // From that time on it is by so much faster than it would be.
+    void set_skew(double skew, double now) {
+        skew_ = skew;
+        anchor(now);
+    }
 
     // The rate as of that time, which must not lie before the last one. How far apart calls are changes
     // nothing.
@@ -56,7 +61,7 @@ class Clock {
         anchor(to_ticks(cycle));
     }
     void state(avr::Archive& archive) {
-        archive(error_, drift_, anchor_ticks_, anchor_cycles_, rate_, divisor_, drift_steps_);
+        archive(error_, drift_, skew_, anchor_ticks_, anchor_cycles_, rate_, divisor_, drift_steps_);
     }
 
   private:
@@ -65,10 +70,10 @@ class Clock {
             anchor_cycles_ += (ticks - anchor_ticks_) * rate_;
             anchor_ticks_ = ticks;
         }
-        rate_ = (1 + error_) / divisor_;
+        rate_ = (1 + error()) / divisor_;
     }
 
-    double error_, drift_;
+    double error_, drift_, skew_ = 0;
     double anchor_ticks_, anchor_cycles_ = 0; // a moment in both measures
     double rate_;                             // cycles per tick from there on
     uint32_t divisor_ = 1;

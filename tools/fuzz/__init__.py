@@ -1,0 +1,1 @@
+"""What parses in the firmware, under libFuzzer with sanitizers: python -m fuzz, or make fuzz."""
