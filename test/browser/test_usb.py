@@ -16,8 +16,10 @@ from support.browser import Visit
 from support.intel_hex import image
 from support.page_server import TILENCA
 from support.serial_bridge import Bridge, bridged_page, stand_in
+from tilenca.base import paths
 from tilenca.emulator.serve import STOCK_BOOTLOADER
 from tilenca.fleet.image import check_image, parse_hex
+from tilenca.page.alone import BEHIND
 from tilenca.protocol.sentences import HelloSentence, format_sentence
 
 NAMES = ("tile-01", "tile-02")
@@ -165,6 +167,27 @@ def test_an_image_that_hangs_bootloaders_is_refused(visit: Visit, tmp_path: Path
         page.locator("#notice", has_text="No port was chosen").wait_for()
         page.goto("about:blank")
     assert board.pages == 0
+
+
+def test_the_folder_of_files_brings_its_own_firmware(visit: Visit, firmware: Path) -> None:
+    page = visit.page
+    # The emulator itself is not built here, and a document that a test made up may not reach the port.
+    visit.forgiven = ("404", "LOCAL_NETWORK_ACCESS")
+    document = (
+        (paths.PAGE / "index.html").read_text().replace(BEHIND.format("server"), BEHIND.format("emulator"))
+    )
+    image_id = f"{check_image(firmware.with_suffix('.hex')).firmware_id:08X}"
+    board = StandIn()
+    with board, bridged_page({"one": Path(board.port)}) as bridge:
+        page.add_init_script(stand_in(["one"], []))
+        page.route(bridge.url, lambda route: route.fulfill(body=document, content_type="text/html"))
+        page.route("**/emulator/firmware.elf", lambda route: route.fulfill(body=firmware.read_bytes()))
+        page.goto(bridge.url)
+        page.get_by_role("button", name="Connect tiles").click()
+        page.get_by_role("button", name="Take the firmware of this page").click()
+        page.locator("#usb-about", has_text=f"firmware id {image_id}").wait_for()
+        assert page.get_by_role("button", name="Flash all tiles").is_enabled()
+        page.goto("about:blank")
 
 
 def test_an_image_beyond_64_ki_words_goes_in_whole(visit: Visit, tmp_path: Path) -> None:
