@@ -87,6 +87,18 @@ def test_failures_of_one_record_count_by_their_mean() -> None:
     assert pools.failures[0] == pytest.approx(0.5 + 0.1 * (share - 0.5))
 
 
+def test_rebuilt_grids_may_have_been_settled_for_long_before() -> None:
+    recipe = replace(SMOKE, reset=0.0, switch=1.0, state_shuffle=0.0, settled=1.0)
+    pools = trainer(recipe=recipe).pools
+    pools.undisturbed.states[:, :, 5] = 0.5  # none of the others has this
+    taken = pools.take(0.5).perturbed
+    assert (pools.perturbed.states[taken, :, 5] == 0.5).any(axis=1).mean() > 0.8
+    assert (pools.perturbed.age[taken] == 0).all()
+    none = trainer(recipe=replace(recipe, settled=0.0)).pools
+    none.undisturbed.states[:, :, 5] = 0.5
+    assert not (none.perturbed.states[none.take(0.5).perturbed, :, 5] == 0.5).any()
+
+
 def test_undisturbed_grids_that_went_wrong_are_taken_first() -> None:
     recipe = replace(SMOKE, undisturbed_pool=40, undisturbed_batch=10, batch=16)
     pools = trainer(recipe=recipe).pools

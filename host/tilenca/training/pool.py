@@ -123,10 +123,19 @@ class Pools:
         switched = resets + round(recipe.switch * count)
         disturbed = switched + round(recipe.state_shuffle * count)
         *parts, _ = np.split(taken, (resets, switched, disturbed))
+        for number in parts[1]:
+            if recipe.settled * recipe.undisturbed_pool > 0 and self.random.random() < recipe.settled:
+                self._copy_undisturbed(int(number))
         for numbers, disturb in zip(parts, (self.reset, self.switch, self.shuffle_states), strict=True):
             for number in numbers:
                 disturb(self.perturbed, int(number))
         return taken, resets, disturbed
+
+    def _copy_undisturbed(self, number: int) -> None:
+        """Puts any grid of the undisturbed pool into a place of the perturbed one."""
+        other = int(self.random.integers(len(self.undisturbed.age)))
+        self.perturbed.drawing[number] = self.undisturbed.drawing[other]
+        self.perturbed.states[number] = self.undisturbed.states[other]
 
     def _take_undisturbed(self) -> Numbers:
         """Draws grids of the undisturbed pool, some of those that went wrong; old ones start anew."""

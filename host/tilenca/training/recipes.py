@@ -32,6 +32,7 @@ class Recipe:
         staggered_start: share of the samples that start anew in which tiles are switched on one after the
             other; their first results do not count, but later ones must be right.
         switch: share of the perturbed samples that are rebuilt into another drawing while running.
+        settled: share of those that were undisturbed for long before: they must let go of an old answer.
         state_shuffle: share of the perturbed samples whose tiles get states of any other tiles; the network
             learns to recover from arbitrary states.
         away: share of the perturbed samples in which a tile or two are off for once; the results of the other
@@ -94,6 +95,7 @@ class Recipe:
     reset: float = 0.0
     staggered_start: float = 0.0
     switch: float = 0.0
+    settled: float = 0.0
     state_shuffle: float = 0.0
     away: float = 0.0
     undisturbed_pool: int = 0
@@ -173,28 +175,46 @@ FULL = Recipe(
     validation_runs=500,
 )
 
+# For any hand: what a class may become, not only the drawings of the files. docs/TRAINING.md says what it
+# reaches and what it costs.
+FORMS = replace(
+    FULL,
+    iterations=66_000,
+    batch=36,
+    undisturbed_pool=384,
+    undisturbed_batch=14,
+    stretched=0.12,
+    varied=0.33,
+    damaged=0.15,
+    unknown=0.22,
+    unlabelled=0.04,
+    ramp=(0.02, 0.15),
+    loss_limit=1.0,
+    failure_weighting=0.3,
+    refresh_every=250,
+    mine_every=1000,
+    trials=200,
+    check_every=0,
+)
+
 RECIPES: dict[str, Recipe] = {
     "full": FULL,
-    # For any hand: what a class may become, not only the drawings of the files. docs/TRAINING.md says what it
-    # reaches and what it costs.
-    "forms": replace(
-        FULL,
-        iterations=66_000,
-        batch=36,
-        undisturbed_pool=384,
-        undisturbed_batch=14,
-        stretched=0.12,
-        varied=0.33,
-        damaged=0.15,
-        unknown=0.22,
-        unlabelled=0.04,
-        ramp=(0.02, 0.15),
-        loss_limit=1.0,
-        failure_weighting=0.3,
-        refresh_every=250,
-        mine_every=1000,
-        trials=200,
-        check_every=0,
+    "forms": FORMS,
+    # Goes on from the weights of a model by `forms`, in smaller steps, and with more that shakes a tile.
+    "refine": replace(
+        FORMS,
+        iterations=64_000,
+        learning_rate=4e-4,
+        switch=0.33,
+        settled=0.3,
+        undisturbed_batch=13,
+        stretched=0.10,
+        varied=0.38,
+        damaged=0.16,
+        unknown=0.2,
+        unlabelled=0.05,
+        ramp=(0.0, 0.01),
+        mine_every=800,
     ),
     # For thousands of drawings of a class, such as handwriting: what they may become is in the files.
     "many": replace(
