@@ -231,3 +231,15 @@ def test_the_targets_that_a_model_holds_are_in_its_picture(tmp_path: Path) -> No
     (tmp_path / "model" / "metrics.json").write_text("{}", encoding="utf-8")
     assert plot(tmp_path / "model", "--out", tmp_path, "--format", "svg") == 0
     assert (tmp_path / "history.svg").read_bytes() != with_targets
+
+
+def test_a_recording_of_tiles_can_be_filmed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recording = tmp_path / "r.jsonl"
+    assert main(["emulate", "--shape", "1", "--seconds", "2", "--record", str(recording)]) in (0, 1)
+    capsys.readouterr()
+    assert plot("--film", tmp_path / "r.gif", "--replay", recording, "--json") == 0
+    report = json.loads(capsys.readouterr().out)
+    assert fits("plot-recording", report)
+    assert report["tiles"] == 5
+    with Image.open(tmp_path / "r.gif") as image:
+        assert getattr(image, "n_frames", 0) == report["pictures"] > 1

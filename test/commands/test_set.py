@@ -126,3 +126,10 @@ def test_a_marking_is_of_one_board_and_for_good(capsys: pytest.CaptureFixture[st
     assert "it has another marking; --replace replaces it" in capsys.readouterr().out
     assert set_in(devices, "board", "2.18", "--tile", "2", "--replace") == 0
     assert not any(line.startswith(b"$MARK") for line in devices[0].heard)
+
+
+def test_what_only_some_models_can_show_is_refused_with_the_reason(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert set_in([tile(1)], "leds", "2") == 1
+    assert "flash one trained with --recipe damage" in capsys.readouterr().out

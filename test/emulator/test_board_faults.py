@@ -91,8 +91,26 @@ def test_a_mistyped_fault_says_what_it_takes(text: str, fact: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "fact"), [("led=3@9", "no tile '9'"), ("plug@1E", "a plug goes on a side without a neighbour")]
+    ("text", "fact"),
+    [
+        ("led=3@9", "no tile '9'"),
+        ("plug@1E", "a plug goes on a side without a neighbour"),
+        ("joined=PG6+PG7@2:5", "no pin PG6"),
+        ("low=PI3@2:5", "PI3"),
+    ],
 )
 def test_a_fault_of_a_place_that_is_not_there_is_refused(text: str, fact: str) -> None:
     with pytest.raises(UsageError, match=fact), boards(text):
         pass
+
+
+def test_what_begins_in_a_long_slice_is_played_from_then_on() -> None:
+    with boards("plug@1N:2.0") as emulation:
+        emulation.array[0].read_serial()
+        emulation.pass_time(0.3)
+        emulation.array[0].write_serial(b"s")
+        emulation.pass_time(0.1)
+        emulation.array[0].write_serial(b"t")
+        emulation.pass_time(3.0)
+        lines = emulation.array[0].read_serial().decode().splitlines()
+    assert "side N: pass, loop-back" in lines

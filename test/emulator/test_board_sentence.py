@@ -69,6 +69,7 @@ def test_the_fuses_are_told_on_request(firmware: Path) -> None:
         tile.write_eeprom(0, settings_block(7, 100, 0))
         tile.set_fuses(low=0xFF, high=0xD9, extended=0xFC, lock=0xCF)
         array.run(0.3)
+        assert any(isinstance(one, ChipSentence) for one in said(tile)), "at the start"
         tile.write_serial(chip_command())
         array.run(0.1)
         assert ChipSentence(7, 0xFF, 0xD9, 0xFC, 0xCF) in said(tile)

@@ -10,7 +10,8 @@ from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_training_task
 from tilenca.simulator.engine import FastEngine
-from tilenca.training.recipes import RECIPES, aims_of
+from tilenca.training.recipe import aims_of
+from tilenca.training.recipes import RECIPES
 
 MODEL = load_model(paths.DEFAULT_MODEL)
 

@@ -8,7 +8,8 @@ from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN, shape_table
 from tilenca.shapes.stretch import Rows, smallest
 from tilenca.shapes.variant import CHOOSING, LAST, TRAINED, split_of
-from tilenca.training.recipes import RECIPES, aims_of
+from tilenca.training.recipe import aims_of
+from tilenca.training.recipes import RECIPES
 
 
 def test_the_exam_asks_for_what_training_never_saw() -> None:

@@ -10,7 +10,7 @@ import pytest
 from support.refusal import refusal
 from tilenca.model import format_1
 from tilenca.model.file import load_model
-from tilenca.training.recipes import Recipe
+from tilenca.training.recipe import Recipe
 
 
 def test_a_model_of_format_1_is_read_and_saved_as_format_2(model: Path, tmp_path: Path) -> None:

@@ -24,7 +24,8 @@ def test_stepping_changes_no_byte_of_what_comes(firmware: Path) -> None:
     assert [tile.halted for tile in stepped] == [False, False, True]
     assert stepper.release()
     for array in (straight, stepped):
-        array.run(0.2 - array.time_s)
+        array.run(0.25 - array.time_s)
+    assert stepped.time_s == straight.time_s
     assert stepped.save() == straight.save()
 
 

@@ -12,7 +12,8 @@ from tilenca.model.file import Dimensions
 from tilenca.shapes.batch import Batch, load_training_task
 from tilenca.training.config import Config
 from tilenca.training.curriculum import labels_of
-from tilenca.training.recipes import RECIPES, Recipe
+from tilenca.training.recipe import Recipe
+from tilenca.training.recipes import RECIPES
 from tilenca.training.runner import Job, make_trainer
 from tilenca.training.trainer import Trainer
 from tilenca.training.update_schedule import Circumstances

@@ -66,7 +66,7 @@ def test_a_model_that_cannot_be_added_is_named(
     web: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([str(web), str(tmp_path / "out"), "nonsense"]) == 4
-    assert "nonsense: no model to add; there are digits-40, " in capsys.readouterr().err
+    assert "nonsense: no model to add; there are damage, digits-40, " in capsys.readouterr().err
 
 
 def test_it_wants_two_folders(capsys: pytest.CaptureFixture[str]) -> None:

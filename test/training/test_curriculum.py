@@ -11,7 +11,8 @@ from tilenca.shapes.file import UNKNOWN
 from tilenca.shapes.variant import TRAINED, split_of
 from tilenca.training.curriculum import DRAWN, STRETCHED, Curriculum, build, labels_of
 from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED
-from tilenca.training.recipes import RECIPES, Recipe
+from tilenca.training.recipe import Recipe
+from tilenca.training.recipes import RECIPES
 
 FULL = replace(RECIPES["forms"], stretch=1.5, library=600)
 

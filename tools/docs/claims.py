@@ -45,7 +45,8 @@ def main() -> int:
             f"{README.name}: has other numbers than {RESULTS.name}; run it without --check", file=sys.stderr
         )
         return 1
-    README.write_text(right, encoding="utf-8")
+    if not check:
+        README.write_text(right, encoding="utf-8")
     return 0
 
 

@@ -22,6 +22,8 @@ USER = "tilenca set"
 HEADER = ("PORT", "TILE", "RESULT", "ID", "PERIOD", "UPDATES", "BRIGHTNESS", "WHY")
 # What of a HELLO each setting is; a HELLO does not tell `leds`, and the tile's acknowledgement is enough.
 FIELDS = {"id": "tile", "period": "period_ms", "updates": "updates", "brightness": "brightness"}
+LEDS_MISSING = 2
+NO_DIRECTIONS = "its model does not say where a tile is missing; flash one trained with --recipe damage"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -165,7 +167,15 @@ def _set(reader: PortReader, rows: dict[str, SettingRow], name: str, value: int 
     replies = command_all(reader, speaking, "MARK" if name == "board" else "SET")
     done = [port for port, reply in replies.items() if not reply.problem]
     for port, reply in replies.items():
-        rows[port].error = reply.problem or None
+        row = rows[port]
+        row.error = reply.problem or None
+        if (
+            reply.problem
+            and (name, value) == ("leds", LEDS_MISSING)
+            and row.hello
+            and not row.hello.directions
+        ):
+            row.error = NO_DIRECTIONS
     for port, answer in ask(reader, done).items():
         row = rows[port]
         row.hello, row.error = answer.hello or row.hello, answer.problem or None

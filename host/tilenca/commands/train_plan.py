@@ -27,7 +27,8 @@ from tilenca.shapes.sizes import Sizes
 from tilenca.shapes.vary import Vary
 from tilenca.training.curriculum import labels_of
 from tilenca.training.generator import FEW
-from tilenca.training.recipes import Recipe, find_recipe
+from tilenca.training.recipe import Recipe
+from tilenca.training.recipes import find_recipe
 
 
 @dataclass(frozen=True)

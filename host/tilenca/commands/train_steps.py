@@ -20,7 +20,8 @@ from tilenca.commands.train_plan import TrainingPlan, usual_channels
 from tilenca.evaluation.suites import make_suite
 from tilenca.model.file import Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
-from tilenca.training.recipes import aims_of, find_recipe
+from tilenca.training.recipe import aims_of
+from tilenca.training.recipes import find_recipe
 from tilenca.training.sessions import noted
 from tilenca.training.tensorboard import event_files, move_events
 from tilenca.views.training import TrainingViews

@@ -32,6 +32,7 @@ VALUES = {
     "resonator": (r"(-?\d{1,2}(?:\.\d+)?)", "percent within -5 to 5"),
     "plug": ("", "no value"),
 }
+PIN_KINDS = ("high", "low", "joined")
 ALL_KINDS = (*KINDS, *VALUES)
 SHAPE = re.compile(r"([a-z]+)(?:=([^@:]+))?@(\d+)([NESW]?)(?::(\d+(?:\.\d+)?)(?:-(\d+(?:\.\d+)?))?)?")
 FIRST_LED_CHANNEL, OPEN, USUAL = 8, 1023, 512  # what the ADC says of an LED that is missing, and of one
@@ -119,6 +120,8 @@ class BoardFaults(Faults):
     def _add_board(self, fault: BoardFault) -> None:
         if not 1 <= fault.tile <= len(self.array):
             raise fault.refuse(f"no tile '{fault.tile}'; they are 1 to {len(self.array)}")
+        if fault.kind in PIN_KINDS:
+            self._check_pins(fault)
         if fault.kind == "plug":
             end = (fault.tile - 1, SIDES.index(fault.side))
             if any(end in (link[:2], link[2:]) for link in self.links):
@@ -127,17 +130,30 @@ class BoardFaults(Faults):
         if fault.to_s is not None:
             self._plan(fault.to_s, partial(self._end_board, fault))
 
+    def _check_pins(self, fault: BoardFault) -> None:
+        """Refuses a pin that the chip has not."""
+        for port, bit in zip(fault.values[::2], fault.values[1::2], strict=True):
+            try:
+                self.array[fault.tile - 1].pin(port, int(bit))
+            except UsageError as error:
+                raise fault.refuse(str(error)) from error
+
     def run(self, seconds: float) -> list[int]:
         """As that of `Faults`, and does what bridges and plugs do meanwhile."""
-        if not self._going:
-            return super().run(seconds)
         restarted: set[int] = set()
         end_s = self.array.time_s + seconds
         while (left_s := end_s - self.array.time_s) > LEAST_S:
-            restarted |= set(super().run(min(STEP_S, left_s)))
+            restarted |= set(super().run(self._step_s(left_s)))
             for act in list(self._going.values()):
                 act()
         return sorted(restarted)
+
+    def _step_s(self, left_s: float) -> float:
+        """How far to run at once: to what begins next, and while anything is going not far."""
+        if self._going:
+            return min(STEP_S, left_s)
+        due_s = self._due[0][0] - self.array.time_s if self._due else left_s
+        return min(max(due_s, LEAST_S), left_s)
 
     def _begin_board(self, fault: BoardFault) -> None:
         tile = self.array[fault.tile - 1]

@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from tilenca.model.file import Dimensions, Model
-from tilenca.training.recipes import Recipe
+from tilenca.training.recipe import Recipe
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from tilenca.shapes.gaps import Gaps
 from tilenca.shapes.sizes import Size, Sizes
 from tilenca.shapes.stretch import Rows
 from tilenca.training.generator import DAMAGED, FREE, OF_NO_CLASS, VARIED, Generator
-from tilenca.training.recipes import Recipe
+from tilenca.training.recipe import Recipe
 
 DRAWN, STRETCHED = "drawn", "stretched"
 WHOLE = (DRAWN, STRETCHED, VARIED)

@@ -16,7 +16,7 @@ from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
 from tilenca.training.curriculum import DRAWN, Curriculum
 from tilenca.training.pool_batch import Numbers, States, Taken
-from tilenca.training.recipes import Recipe
+from tilenca.training.recipe import Recipe
 from tilenca.training.update_schedule import Circumstances
 
 FAILURE_EMA = 0.1  # weight of the newest result in a drawing's share of failures

@@ -26,7 +26,7 @@ from tilenca.simulator.engine import FastEngine
 from tilenca.training.config import Config
 from tilenca.training.curriculum import build
 from tilenca.training.progress import Progress, Tell
-from tilenca.training.recipes import aims_of, trains_for
+from tilenca.training.recipe import aims_of, trains_for
 from tilenca.training.rollout import use_threads
 from tilenca.training.trainer import Trained, Trainer, model_of
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.shapes.batch import Batch
-from tilenca.training.recipes import Recipe
+from tilenca.training.recipe import Recipe
 
 Flags = NDArray[np.bool_]
 

@@ -11,6 +11,7 @@ QUESTIONS = {
     "sizes": "know other sizes",
     "lost": "stand lost messages",
     "damaged": "know drawings with a tile missing",
+    "directions": "say where a tile is missing",
     "faults": "stand a tile that is off for a while",
     "dead": "stand many dead tiles",
     "unknown": "show a dash on drawings of no class",

@@ -177,7 +177,7 @@ def _looks(
     every_s = max(LOOK_S, (last_s - first_s) / MOST_LOOKS)
     fleet = Fleet()
     before: tuple[Look | None, ...] | None = None
-    due_s = first_s
+    due_s, looked = first_s, 0
     for event in [*events, None]:
         while event is None or event.time_s > due_s:
             looks = tuple(_seen(fleet.tiles.get(port), due_s) for port in ports)
@@ -186,7 +186,8 @@ def _looks(
                 before = looks
             if event is None:
                 return
-            due_s += every_s
+            looked += 1
+            due_s = first_s + looked * every_s
         fleet.take(event)
 
 
