@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from support.avr import Compile
+from support.firmware import board_test_image
 from tilenca import cli
 from tilenca.base import paths
 from tilenca.base.paths import FIRMWARE_ELF
@@ -326,3 +327,9 @@ def test_streams_that_are_full_closed_or_left(redirection: str, status: int, sai
     assert said in done.stderr
     assert "Traceback" not in done.stderr
     assert "Exception ignored" not in done.stderr
+
+
+def test_the_board_test_is_told_from_a_tile(capsys: pytest.CaptureFixture[str]) -> None:
+    assert emulate(capsys, "--elf", board_test_image(), "--seconds", 1)[2].startswith(
+        "tilenca: this image is the board test, which shows no label: give --serve DIR"
+    )

@@ -42,6 +42,11 @@ from tilenca.views.progress import Tell
 ALL = "all"
 NO_BOOTLOADER = "none"
 
+BOARD_TEST_IMAGE = (
+    "this image is the board test, which shows no label: give --serve DIR, and read its ports "
+    "(docs/BOARD_TEST.md)"
+)
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the command's options."""
@@ -121,7 +126,10 @@ def _prepare(args: argparse.Namespace) -> _Run:
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
-    told = [_no_tile(image)] if hello is None else _foreign(hello, known and known[0], task)
+    if hello is None:
+        told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
+    else:
+        told = _foreign(hello, known and known[0], task)
     args.foreign = bool(told)
     for note in told:
         warn(f"tilenca: {note}")
@@ -144,16 +152,6 @@ def _prepare(args: argparse.Namespace) -> _Run:
         return Emulation(shape, task.labels, image, replace(settings, most_updates=most), defaults)
 
     return _Run(task, shapes, lay_out, told)
-
-
-def _no_tile(image: Path) -> str:
-    """What to say before the run of an image that does not greet."""
-    if is_board_test(image):
-        return (
-            "this image is the board test, which shows no label: give --serve DIR, and read its ports "
-            "(docs/BOARD_TEST.md)"
-        )
-    return f"{image} does not greet as a tile's firmware does: what it shows is not judged"
 
 
 def _foreign(hello: HelloSentence, model: Model | None, task: Task) -> list[str]:
