@@ -2,6 +2,7 @@
 
 import json
 import random
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -86,7 +87,7 @@ def test_a_model_without_room_is_left_out_and_those_after_it_are_not(
     large.write_bytes(random.Random(1).randbytes(page_bundle.MOST_GZIPPED))
     images = {"large": large, "small": firmware, "huge": large}
     models = [
-        ModelOffer(name, index, load_offer(), lambda image=image: image, lambda event: firmware)
+        ModelOffer(name, index, load_offer(), partial(Path, image), lambda event: firmware)
         for index, (name, image) in enumerate(images.items())
     ]
     monkeypatch.setattr(page_bundle, "chosen", lambda names: models)
