@@ -45,6 +45,8 @@ function send(command) {
 }
 
 const deeds = {
+  /** @param {string} text */
+  say: (text) => notice.say(text),
   /** @param {string | null} port */
   select(port) {
     const chosen = port === board.selected ? null : port;
@@ -123,12 +125,12 @@ new Share(byId("top-deeds"), tiles, recorder, {
   say: (text) => notice.say(text),
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
-  replay(events, isCut) {
+  replay: (events, isCut) => usb.release(() => {
     source.close();
     const cut = isCut ? " Its last line was cut off; it ends before that." : "";
     notice.say(`A recording: go to any time of it. Reload the page for running tiles.${cut}`);
     source = openRecording(events, listener);
-  },
+  }),
 });
 const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
   send,

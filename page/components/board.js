@@ -16,7 +16,7 @@ import { View } from "./view.js";
 /** @type {Record<string, number>} */
 const ARROWS = { ArrowUp: 0, ArrowRight: 1, ArrowDown: 2, ArrowLeft: 3 };
 
-/** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "shift" | "cut">} BoardDeeds */
+/** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "shift" | "cut"> & {say: (text: string) => void}} BoardDeeds */
 
 export class Board {
   /** @param {HTMLElement} root @param {Tiles} tiles @param {BoardDeeds} deeds */
@@ -205,7 +205,10 @@ export class Board {
   carry(tile, side) {
     const [rows, cols] = OFFSETS[side];
     const shift = { ports: clusterOf(this.tiles, tile).map(({ port }) => port), rows, cols };
-    if (!isFree(this.tiles, shift)) return;
+    if (!isFree(this.tiles, shift)) {
+      this.deeds.say("There is no room there for all that hangs together.");
+      return;
+    }
     this.deeds.shift(shift);
     this.at = [this.at[0] + rows, this.at[1] + cols];
   }

@@ -1,7 +1,7 @@
 // The last seconds of a run as a GIF: the recorded events once more, and a picture of the board for each frame.
 
 /** @import { Lens } from "../stream/lens.js" */
-/** @import { StreamEvent } from "../stream/source.js" */
+/** @import { Place, StreamEvent } from "../stream/source.js" */
 import { Tiles } from "../stream/tiles.js";
 import { Colours, Gif } from "./gif.js";
 import { boxOf, paintBoard } from "./picture.js";
@@ -10,6 +10,7 @@ import { verdictOn } from "./verdict.js";
 const FRAMES_PER_S = 12.5; // GIFs count in hundredths of a second
 const LAST_S = 1.5; // the last frame stands so long
 const SAMPLES = 8; // frames whose colours the palette is made of
+const PORTION = 2000; // events between two breaths
 const SIZE = 64; // pixels of a tile's place
 
 /** The times of the frames, in seconds of the run. @param {{from: number, to: number, seconds: number}} span what of the run, and how long it is to last */
@@ -18,26 +19,29 @@ export function frameTimes({ from, to, seconds }) {
   return Array.from({ length: count + 1 }, (_, index) => from + ((to - from) * index) / count);
 }
 
+/** Lets the browser paint. */
+const breath = () => new Promise((resolve) => setTimeout(resolve, 0));
+
 /**
- * The tiles at some times.
+ * The tiles at some times: the same ones, as they are then.
  * @param {StreamEvent[]} recorded in order of time
  * @param {number[]} times
  */
-function* tilesAt([first, ...rest], times) {
+async function* tilesAt(recorded, times) {
   const tiles = new Tiles();
-  tiles.take([first]);
   let place = 0;
   for (const time of times) {
-    const before = place;
-    while (place < rest.length && rest[place].time <= time) place++;
-    tiles.take(rest.slice(before, place));
+    let end = place;
+    while (end < recorded.length && (end === 0 || recorded[end].time <= time)) end++;
+    for (; place < end; place += PORTION) {
+      tiles.take(recorded.slice(place, Math.min(end, place + PORTION)));
+      await breath();
+    }
+    place = end;
     tiles.time = time;
     yield tiles;
   }
 }
-
-/** Lets the browser paint. */
-const breath = () => new Promise((resolve) => setTimeout(resolve, 0));
 
 /**
  * @param {StreamEvent[]} recorded of `Recorder.recording`
@@ -47,7 +51,9 @@ const breath = () => new Promise((resolve) => setTimeout(resolve, 0));
  */
 export async function boardFilm(recorded, span, lens) {
   const times = frameTimes(span);
-  const places = [...tilesAt(recorded, times)].flatMap((tiles) => tiles.laid().map((tile) => tile.place));
+  /** @type {Place[]} */
+  const places = [];
+  for await (const tiles of tilesAt(recorded, times)) places.push(...tiles.laid().map((tile) => tile.place));
   const box = boxOf(places);
   const canvas = document.createElement("canvas");
   /** @param {Tiles} tiles */
@@ -59,14 +65,14 @@ export async function boardFilm(recorded, span, lens) {
   };
   const colours = new Colours();
   const every = Math.max(1, Math.floor(times.length / SAMPLES));
-  for (const tiles of tilesAt(recorded, times.filter((_, index) => (times.length - 1 - index) % every === 0))) {
+  for await (const tiles of tilesAt(recorded, times.filter((_, index) => (times.length - 1 - index) % every === 0))) {
     colours.count(picture(tiles));
     await breath();
   }
   colours.choose();
   const gif = new Gif(canvas.width, canvas.height, colours.palette);
   let left = times.length;
-  for (const tiles of tilesAt(recorded, times)) {
+  for await (const tiles of tilesAt(recorded, times)) {
     gif.add(colours.entries(picture(tiles)), --left ? 100 / FRAMES_PER_S : 100 * LAST_S);
     await breath();
   }

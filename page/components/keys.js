@@ -3,6 +3,10 @@
 /** @import { Bar, BarDeeds } from "./bar.js" */
 /** @import { LensPanel } from "./lens.js" */
 
+const TYPED_IN = "input:not([type=range], [type=file]), select, textarea, [contenteditable]";
+/** What the space key works by itself. */
+const PRESSED = "button, summary, input";
+
 /**
  * @param {Bar} bar
  * @param {BarDeeds} deeds
@@ -29,7 +33,7 @@ export function listenToKeys(bar, deeds, lens, instruct) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     if (document.querySelector("dialog[open]")) return;
     const target = /** @type {HTMLElement} */ (event.target);
-    if (event.key === " " && target.closest("button, input")) return;
+    if (target.closest(TYPED_IN) || (event.key === " " && target.closest(PRESSED))) return;
     const act = keys[event.key];
     if (!act) return;
     act();

@@ -46,7 +46,7 @@ export class Program {
   choose(port) {
     this.port = port;
     this.asked = "";
-    this.shown = null;
+    this.shown = this.tiles.byPort.get(port)?.chip ?? null; // of before: it is asked for anew
   }
 
   /** Executes so many instructions. @param {number} count */

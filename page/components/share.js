@@ -109,6 +109,7 @@ export class Share {
   /** The last seconds, at the speed of the page. */
   gif() {
     const to = this.tiles.time;
+    if (this.recorder.isFull) return this.deeds.say("The recording is too long; it has the beginning only, and no GIF of the last seconds. Restart the run for one.");
     const speed = this.tiles.pace.speed || 1;
     const from = Math.max(0, to - FILM_S * speed);
     const button = /** @type {HTMLButtonElement} */ (this.film.firstElementChild);
@@ -133,11 +134,16 @@ export class Share {
       const script = `<script type="application/jsonl" id="recording">\n${lines}</script>`;
       const document = (await answer.text()).replace(HOLE, () => script);
       download(new Blob([document], { type: "text/html" }), this.nameOf("html"));
+      this.tellFull();
     });
   }
 
   record() {
     download(new Blob([this.recorder.text()], { type: JSON_LINES }), this.nameOf("jsonl"));
+    this.tellFull();
+  }
+
+  tellFull() {
     if (this.recorder.isFull) this.deeds.say("The recording is too long; it has the beginning only.");
   }
 

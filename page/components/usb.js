@@ -50,7 +50,7 @@ export class UsbPanel {
     top.append(this.button);
     this.file = element("input", { type: "file", accept: ".hex", id: "usb-file", onchange: () => this.choose() });
     this.own = element("button", { type: "button", hidden: true, onclick: () => this.takeOwn() }, "Take the firmware of this page");
-    this.about = element("p", { class: "summary", id: "usb-about" }, "Choose the firmware.hex that `pio run` builds.");
+    this.about = element("p", { class: "summary", id: "usb-about" }, "Choose the firmware.hex that pio run builds.");
     this.flash = element("button", { type: "button", class: "primary", disabled: true, onclick: () => this.flashAll() }, "Flash all tiles");
     this.status = element("p", { role: "status" });
     this.list = element("ul", { class: "ports", "aria-label": "Tiles on USB" });
@@ -109,18 +109,25 @@ export class UsbPanel {
     if (port) await this.source?.add(port);
   }
 
-  async leave() {
-    const { source } = this;
-    if (!source || this.isFlashing) {
+  /** Back to what stood behind the page before. */
+  leave() {
+    return this.release(() => this.deeds.choose(null));
+  }
+
+  /** Goes away for another source, but not in the middle of flashing. @param {() => void} go closes this one, and opens the other */
+  async release(go) {
+    if (this.isFlashing) {
       this.deeds.say("Tiles are being flashed; wait until they are done.");
       return;
     }
+    const { source } = this;
     this.source = null;
     for (const { row } of this.rows.values()) row.remove();
     this.rows.clear();
     setText(this.status, "");
     this.root.hidden = true;
-    this.deeds.choose(null);
+    go();
+    if (!source) return;
     await source.closed; // the ports cannot be opened again before that
     this.button.hidden = false;
   }

@@ -11,8 +11,8 @@
 export const APPLICATION_BYTES = 248 * 1024;
 /** Some Mega bootloaders take three of these in the data for a call of their monitor, and hang. */
 const POISON = 0x21;
-const NO_IMAGE = "not an Intel HEX file; choose the firmware.hex that `pio run` builds";
-const AGAIN = "build it again with `pio run`";
+const NO_IMAGE = "not an Intel HEX file; choose the firmware.hex that pio run builds";
+const AGAIN = "build it again with pio run";
 const [DATA, END, SEGMENT, START_SEGMENT, LINEAR, START_LINEAR] = [0, 1, 2, 3, 4, 5];
 const LINE_ENDS = /\r\n|[\n\r\v\f\x1c-\x1e]/;
 const ERASED = 0xff;

@@ -28,7 +28,12 @@ export class Recorder {
 
   /** @param {StreamEvent[]} events */
   take(events) {
-    if (this.isWhole) return;
+    if (this.isWhole) {
+      const other = events.findIndex(({ stream, source }) => stream !== undefined && source !== "recording");
+      if (other < 0) return;
+      Object.assign(this, { events: [], known: 0, jumpedTo: -1, isFull: false, isWhole: false });
+      events = events.slice(other);
+    }
     for (const event of events) this.takeOne(event);
     if (this.events.length <= MOST_EVENTS) return;
     this.events = this.events.filter((event) => event.frame === undefined); // they are the most, and the least

@@ -8,6 +8,8 @@
  *   setSignals: (signals: {dataTerminalReady?: boolean, requestToSend?: boolean}) => Promise<void>,
  *   readable: ReadableStream<Uint8Array> | null,
  *   writable: WritableStream<Uint8Array> | null,
+ *   getInfo: () => {usbVendorId?: number, usbProductId?: number},
+ *   connected?: boolean,
  * }} WebPort
  * @typedef {EventTarget & {
  *   getPorts: () => Promise<WebPort[]>,
@@ -44,6 +46,8 @@ export class BytePort {
   /** @type {ReadableStreamDefaultReader<Uint8Array> | null} */
   #reader = null;
   #pump = Promise.resolve();
+  /** Until then somebody writes. @type {Promise<unknown>} */
+  #writing = Promise.resolve();
 
   /** @param {WebPort} port */
   constructor(port) {
@@ -102,18 +106,27 @@ export class BytePort {
     return heard;
   }
 
-  /** @param {Uint8Array} bytes @throws {GoneError} it takes nothing any more */
-  async write(bytes) {
-    const writer = this.port.writable?.getWriter();
-    if (!writer) throw new GoneError("the port has gone");
+  /** Writes after what is being written. @param {Uint8Array} bytes @throws {GoneError} it takes nothing any more */
+  write(bytes) {
+    const written = this.#writing.then(() => this.#writeAlone(bytes));
+    this.#writing = written.catch(() => {});
+    return written;
+  }
+
+  /** @param {Uint8Array} bytes */
+  async #writeAlone(bytes) {
     const late = passed(WRITE_MS).then(() => Promise.reject(new GoneError("the port takes nothing")));
     late.catch(() => {}); // where nobody waits for it any more
+    /** @type {WritableStreamDefaultWriter<Uint8Array> | undefined} */
+    let writer;
     try {
+      writer = this.port.writable?.getWriter();
+      if (!writer) throw new GoneError();
       await Promise.race([writer.write(bytes), late]);
     } catch {
       throw new GoneError("the port has gone");
     } finally {
-      writer.releaseLock();
+      writer?.releaseLock();
     }
   }
 

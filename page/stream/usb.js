@@ -26,7 +26,7 @@ export class UsbSource {
   #told = new Map();
   /** Who is on which side of whom, as tiles have said it. @type {Neighbours} */
   #neighbours = new Map();
-  /** The setting `updates` of a tile that was frozen here. @type {Map<string, number>} */
+  /** The setting `updates` of tiles that were frozen here, by their ids. @type {Map<number, number>} */
   #thawed = new Map();
   #began = Date.now();
   /** @type {Promise<unknown>} */
@@ -65,20 +65,19 @@ export class UsbSource {
     this.#tell(event);
   }
 
-  /** A board that was unplugged is back. @param {Event} event */
-  #connected = (event) => {
-    for (const tile of this.tiles.values()) if (tile.webPort === /** @type {unknown} */ (event.target)) tile.open();
-  };
+  /** A board that was unplugged is back, or another one that the page may use. @param {Event} event */
+  #connected = (event) => this.add(/** @type {WebPort} */ (/** @type {unknown} */ (event.target)));
 
   /** Watches the tile behind a port from now on. @param {WebPort} port */
   async add(port) {
-    let tile = [...this.tiles.values()].find((one) => one.webPort === port);
-    if (!tile) {
-      const name = `usb-${this.tiles.size + 1}`;
-      tile = new UsbTile(name, port, (event) => this.#tell(event));
-      this.tiles.set(name, tile);
-    }
-    await tile.open();
+    const tiles = [...this.tiles.values()];
+    const known = tiles.find((one) => one.webPort === port);
+    if (known) return known.open();
+    const back = tiles.find((one) => one.isAway && isLike(one.webPort, port));
+    if (back) return back.comeBack(port);
+    const tile = new UsbTile(`usb-${tiles.length + 1}`, port, (event) => this.#tell(event));
+    this.tiles.set(tile.name, tile);
+    return tile.open();
   }
 
   /** Writes an image to all tiles that do not run it yet, side by side. @param {Image} image */
@@ -188,14 +187,14 @@ export class UsbSource {
   }
 
   /** @param {UsbTile} tile */
-  #freeze({ name, hello }) {
-    if (hello && hello.updates !== STOPPED) this.#thawed.set(name, hello.updates);
+  #freeze({ tile, hello }) {
+    if (hello && hello.updates !== STOPPED) this.#thawed.set(tile, hello.updates);
     return STOPPED;
   }
 
   /** @param {UsbTile} tile */
-  #thaw({ name }) {
-    return this.#thawed.get(name) ?? FOR_EVER;
+  #thaw({ tile }) {
+    return this.#thawed.get(tile) ?? FOR_EVER;
   }
 
   /** Gives all ports back; `closed` comes when it is done. */
@@ -204,6 +203,12 @@ export class UsbSource {
     this.serial.removeEventListener("connect", this.#connected);
     this.closed = Promise.all([...this.tiles.values()].map((tile) => tile.close()));
   }
+}
+
+/** Whether both are boards of one kind. @param {WebPort} one @param {WebPort} other */
+function isLike(one, other) {
+  const [a, b] = [one.getInfo(), other.getInfo()];
+  return a.usbVendorId === b.usbVendorId && a.usbProductId === b.usbProductId;
 }
 
 /**

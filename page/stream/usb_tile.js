@@ -30,10 +30,17 @@ const AWAY = "it was unplugged; connect it again";
  * @typedef {{phase: string, share: number | null, result: "" | "flashed" | "current" | "failed", error: string}} Flashing
  */
 
+/** @type {Flashing} */
+const NOTHING_YET = { phase: "", share: null, result: "", error: "" };
+
 export class UsbTile {
   #reader = new LineReader();
   #listens = false;
   #listening = Promise.resolve();
+  /** @type {Promise<void> | null} */
+  #opening = null;
+  /** The id that it said last, also behind another port. */
+  #saidId = 0;
   #openMs = 0;
   #askMs = 0;
   #answerMs = 0;
@@ -62,11 +69,33 @@ export class UsbTile {
     /** @type {Hello | null} */
     this.hello = null;
     /** @type {Flashing} */
-    this.flashing = { phase: "", share: null, result: "", error: "" };
+    this.flashing = NOTHING_YET;
   }
 
-  /** Opens its port, and listens. */
-  async open() {
+  /** Whether it was unplugged; a browser that does not say so has at least no open port. */
+  get isAway() {
+    return !this.isOpen && this.webPort.connected !== true;
+  }
+
+  /** It was plugged in again: the browser has another port for it then. @param {WebPort} port */
+  async comeBack(port) {
+    await this.#opening;
+    this.webPort = port;
+    this.port = new BytePort(port);
+    this.tile = 0;
+    this.#forget();
+    await this.open();
+  }
+
+  /** Opens its port, and listens; once, however often it is called meanwhile. */
+  open() {
+    this.#opening ??= this.#open().finally(() => {
+      this.#opening = null;
+    });
+    return this.#opening;
+  }
+
+  async #open() {
     if (this.isOpen || !this.isWatched) return;
     try {
       await this.port.open();
@@ -142,12 +171,12 @@ export class UsbTile {
     const label = hear(this.known, sentence, asked);
     if (label !== null) this.label = label;
     this.tile = sentence.tile || this.tile;
+    if (this.#saidId && this.tile && this.tile !== this.#saidId && !this.isBusy) this.flashing = NOTHING_YET; // that was another one
+    this.#saidId = this.tile || this.#saidId;
     if (sentence.name === "HELLO") {
       this.hello = sentence;
       this.#answerMs = 0;
-      if (!asked) {
-        this.#forget();
-      }
+      if (!asked) this.#forget();
     } else if (sentence.name === "LINK") {
       const health = this.health.get(sentence.side) ?? new LinkHealth();
       health.take(sentence);
@@ -201,8 +230,7 @@ export class UsbTile {
     try {
       await this.#flash(image);
     } catch (error) {
-      if (!(error instanceof FlashError)) throw error;
-      this.#end("failed", error.message);
+      this.#end("failed", error instanceof FlashError ? error.message : `it did not work (${error}); connect it anew, then flash it again`);
     } finally {
       this.isBusy = false;
     }
@@ -259,6 +287,7 @@ export class UsbTile {
   /** Nobody watches it any more. */
   async close() {
     this.isWatched = false;
+    await this.#opening;
     this.#listens = false;
     await this.#listening;
     if (!this.isOpen) return;

@@ -79,6 +79,17 @@ def test_where_others_lie_a_cluster_does_not_go(two_bars: Visit) -> None:
     assert page.locator("#notice").is_hidden()
 
 
+def test_a_cluster_without_room_stays_and_the_page_says_so(two_bars: Visit) -> None:
+    page = two_bars.page
+    before = places(page)
+    page.locator("[data-port=tile-04]").focus()
+    page.keyboard.press("Shift+ArrowRight")
+    two_bars.wait_until("location.search.includes('fault=cut@4E')")
+    page.keyboard.press("Control+ArrowRight")
+    page.locator("#notice", has_text="There is no room there").wait_for()
+    assert places(page) == before
+
+
 def test_a_stroke_across_empty_space_breaks_a_cluster_apart(visit: Visit, server: PageServer) -> None:
     page = visit.page
     page.goto(f"{server.url}?draw=1111-1111&speed=0.5&spread=0.05&seed=3")

@@ -22,10 +22,10 @@ KNOWN = """async () => {
 
 
 def opened(visit: Visit, server: PageServer, query: str = "") -> Page:
+    visit.page.emulate_media(reduced_motion="reduce")  # colours come at once
     visit.page.goto(server.url + STANDING + query)
     visit.page.get_by_role("button", name="Go on").wait_for()
     visit.wait_until("location.search.includes('model=')")
-    visit.page.wait_for_timeout(300)  # colours come in softly
     return visit.page
 
 
@@ -33,7 +33,6 @@ def test_a_heat_map_shows_how_sure_each_tile_is(visit: Visit, server: PageServer
     page = opened(visit, server)
     assert page.locator("#scale").is_hidden()
     page.get_by_label("Colours").select_option(label="How sure")
-    page.wait_for_timeout(300)
     assert page.inner_text("#scale").split("\n") == ["How sure", "torn 0", "sure 64 or more"]
     known = page.evaluate(KNOWN)
     seen = page.evaluate(SHADES)
@@ -61,22 +60,20 @@ def test_each_number_of_the_states_is_seen_on_the_whole_board(visit: Visit, serv
         str(known[port][1][at]) for port, *_ in page.evaluate(SHADES)
     ]
     page.get_by_label("Colours").select_option(label="Channel 3")
-    page.wait_for_timeout(300)
     seen = page.evaluate(SHADES)
     assert [int(text) for _, _, text, _ in seen] == [known[port][1][2] for port, *_ in seen]
     reds = {int(text): int(re.findall(r"\d+", colour)[0]) for _, colour, text, _ in seen}
     blues = {int(text): int(re.findall(r"\d+", colour)[2]) for _, colour, text, _ in seen}
     for value in reds:
         assert (reds[value] > blues[value]) == (value > 2) or abs(value) < 12
-    page.wait_for_timeout(600)
-    assert "look=channel-3" in page.url  # the address is written anew all the time, and keeps it
+    page.wait_for_timeout(600)  # the address is written anew meanwhile, and keeps it
+    assert "look=channel-3" in page.url
     page.reload()
     page.get_by_role("button", name="Go on").wait_for()
     visit.wait_until("document.getElementById('look').value === 'channel-3'")
 
 
 def test_looks_go_by_keyboard_and_without_motion(visit: Visit, server: PageServer) -> None:
-    visit.page.emulate_media(reduced_motion="reduce")
     page = opened(visit, server)
     page.keyboard.press("l")
     assert page.locator("#look").input_value() == "sure"
@@ -98,3 +95,25 @@ def test_a_tile_without_power_tells_nothing(visit: Visit, server: PageServer) ->
     assert seen["tile-03"][0] == ""
     assert page.locator("[data-port=tile-03].shaded").count() == 0
     assert page.locator(".tile.shaded").count() > 10
+
+
+def test_marks_and_numbers_can_be_read_on_bright_tiles(visit: Visit, server: PageServer) -> None:
+    page = opened(visit, server, "&look=sure")
+    for port, button in (("tile-03", "Freeze"), ("tile-05", "Turn by 90°")):
+        page.locator(f"[data-port={port}]").click()
+        page.get_by_role("button", name=button).click()
+    for _ in range(12):  # it tells that it is frozen now and then
+        page.get_by_role("button", name="One update").click()
+    page.locator("[data-port=tile-05][data-state=turned]").wait_for()
+    page.locator("[data-port=tile-03][data-state=frozen]").wait_for()
+    for number in (3, 5):
+        tile = page.locator(f"[data-port=tile-0{number}].shaded")
+        read = tile.evaluate(
+            """(one) => {
+              const colourOf = (part) => getComputedStyle(one.querySelector(part));
+              return [colourOf(".state-mark").color, colourOf(".counter").fill, colourOf(".counter").display];
+            }"""
+        )
+        assert read[0] == read[1]
+        assert read[2] != "none"
+    assert Axe().run(page).violations_count == 0

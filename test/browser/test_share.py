@@ -113,6 +113,44 @@ def test_a_gif_shows_the_last_seconds(shared: Visit, tmp_path: Path) -> None:
     assert path.stat().st_size < 1_000_000
 
 
+def test_a_gif_has_room_for_tiles_that_have_gone(visit: Visit, server: PageServer) -> None:
+    """Twelve columns and then eleven: the film is as wide as at its beginning."""
+    visit.page.goto(server.url)
+    bright = visit.page.evaluate(
+        """async () => {
+          const { boardFilm } = await import("./components/film.js");
+          const put = (col, time) => ({ time, port: `t${col}`, place: [0, col], tile: col });
+          const events = [
+            { time: 0, stream: 1, source: "emulated" }, { time: 0, run: { seed: 0, tiles: 12 } },
+            ...Array.from({ length: 12 }, (_, col) => put(col, 0)), { time: 0.5, port: "t11", place: null },
+          ];
+          const film = await boardFilm(events, { from: 0, to: 1, seconds: 1 }, null);
+          return [...new Uint8Array(await film.arrayBuffer())];
+        }"""
+    )
+    assert Image.open(io.BytesIO(bytes(bright))).size[0] == round((12 * 120 + 96) * 64 / 120)
+
+
+def test_of_a_recording_that_is_too_long_no_gif_is_made(visit: Visit, server: PageServer) -> None:
+    visit.page.goto(server.url)
+    said = visit.page.evaluate(
+        """async () => {
+          const [{ Recorder }, { Share }, { Tiles }] = await Promise.all(
+            ["./stream/recorder.js", "./components/share.js", "./stream/tiles.js"].map((one) => import(one)));
+          const recorder = new Recorder();
+          recorder.take([{ time: 0, stream: 1 }, { time: 0, run: { seed: 0 } }]);
+          recorder.take(Array.from({ length: 250_001 }, (_, time) => ({ time, port: "t", note: "" })));
+          const said = [];
+          const deeds = { say: (text) => said.push(text) };
+          const share = new Share(document.createElement("div"), new Tiles(), recorder, deeds);
+          await share.gif();
+          return said;
+        }"""
+    )
+    assert len(said) == 1
+    assert said[0].startswith("The recording is too long; it has the beginning only, and no GIF")
+
+
 def test_what_the_gif_encoder_writes_is_what_a_decoder_reads(visit: Visit, server: PageServer) -> None:
     """Noise of all colours fills the table of codes again and again; runs and single pixels are the rest."""
     chance = random.Random(5)

@@ -83,7 +83,7 @@ def checked(path: Path) -> Any:
     try:
         image = check_image(path)
     except UsageError as error:
-        return str(error).removeprefix(f"{path.parent}/").replace("name the", "choose the")
+        return str(error).removeprefix(f"{path.parent}/").replace("name the", "choose the").replace("`", "")
     return [image.size, f"{image.firmware_id:08X}"]
 
 

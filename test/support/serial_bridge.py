@@ -37,7 +37,10 @@ STAND_IN = """
   class Port extends EventTarget {
     constructor(name) {
       super();
-      Object.assign(this, { name, socket: null, readable: null, writable: null });
+      Object.assign(this, { name, socket: null, readable: null, writable: null, connected: true });
+    }
+    getInfo() {
+      return { usbVendorId: 0x2341, usbProductId: serial.kinds[this.name] ?? 0x0042 };
     }
     async open({ baudRate }) {
       if (baudRate !== 115200) throw new TypeError(`${baudRate} baud`);
@@ -55,6 +58,7 @@ STAND_IN = """
       socket.onmessage = ({ data }) => reading.enqueue(new Uint8Array(data));
       socket.onclose = () => {
         if (this.socket !== socket) return;
+        this.connected = false;
         this.socket = this.readable = this.writable = null;
         reading.error(new DOMException("The device has been lost.", "NetworkError"));
         this.dispatchEvent(new Event("disconnect"));
@@ -83,7 +87,10 @@ STAND_IN = """
     if (!offered.length) throw new DOMException("No port selected by the user.", "NotFoundError");
     return port(offered.shift());
   };
+  serial.kinds = {};
+  serial.unplug = (name) => port(name).socket.close();
   serial.plug = (name) => {
+    ports.delete(name); // as in Chromium: it is another object
     const event = new Event("connect");
     Object.defineProperty(event, "target", { value: port(name) });
     serial.dispatchEvent(event);

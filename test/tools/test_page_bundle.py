@@ -1,13 +1,18 @@
 """The bundle of the page that needs no server of its own has all that it loads."""
 
 import json
+import random
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from release import page_bundle
 from release.page_bundle import BundleError, lay_out, main, modules_of
 from tilenca.base import paths
 from tilenca.page.alone import BEHIND
+from tilenca.page.chosen import ModelOffer
+from tilenca.page.offer import load_offer
 
 
 @pytest.fixture
@@ -66,7 +71,33 @@ def test_a_model_that_cannot_be_added_is_named(
     web: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([str(web), str(tmp_path / "out"), "nonsense"]) == 4
-    assert "nonsense: no model to add; there are damage, digits-40, " in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "nonsense: no model to add; there are " in told
+    assert " digits-40, " in told
+
+
+def test_a_model_without_room_is_left_out_and_those_after_it_are_not(
+    web: Path,
+    tmp_path: Path,
+    firmware: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    large = tmp_path / "large.elf"
+    large.write_bytes(random.Random(1).randbytes(page_bundle.MOST_GZIPPED))
+    images = {"large": large, "small": firmware, "huge": large}
+    models = [
+        ModelOffer(name, index, load_offer(), partial(Path, image), lambda event: firmware)
+        for index, (name, image) in enumerate(images.items())
+    ]
+    monkeypatch.setattr(page_bundle, "chosen", lambda names: models)
+    out = tmp_path / "out"
+    lay_out(web, out, list(images))
+    assert {path.name for path in (out / "emulator" / "models").iterdir()} == {"small.elf", "small.json"}
+    told = capsys.readouterr().err
+    assert "large: left out" in told
+    assert "huge: left out" in told
+    assert "small" not in told
 
 
 def test_it_wants_two_folders(capsys: pytest.CaptureFixture[str]) -> None:

@@ -117,12 +117,13 @@ def lay_out(web: Path, out: Path, names: Sequence[str] = ()) -> None:
     models = [first]
     for model in added:
         image = model.image(threading.Event())
-        room -= _gzipped(image) + OFFER_GZIPPED
-        if room < 0:
+        needed_bytes = _gzipped(image) + OFFER_GZIPPED
+        if needed_bytes > room:
             warn(
                 f"{model.name}: left out, since the bundle would have more than {MOST_GZIPPED} bytes gzipped"
             )
-            break
+            continue
+        room -= needed_bytes
         (out / EMULATOR / MODELS).mkdir(exist_ok=True)
         shutil.copyfile(image, out / EMULATOR / MODELS / f"{model.name}.elf")
         models.append(model)
