@@ -128,6 +128,7 @@ report: setup-train ## measure every claim again (some ten minutes of two cores)
 	@sed 's/`report.html`/[results.html](results.html)/' build/report/RESULTS.md > docs/RESULTS.md
 	@cp build/report/report.html docs/results.html
 	@cp build/report/images/results-*.svg docs/images/
+	@$(TOOL) docs.claims
 
 TIME ?= 600
 soak: setup-test ## let twenty emulated tiles go through everything that can happen, for TIME=600 seconds of theirs
