@@ -142,10 +142,12 @@ class BoardFaults(Faults):
         """As that of `Faults`, and does what bridges and plugs do meanwhile."""
         restarted: set[int] = set()
         end_s = self.array.time_s + seconds
-        while (left_s := end_s - self.array.time_s) > LEAST_S:
+        while (left_s := end_s - (now_s := self.array.time_s)) > LEAST_S:
             restarted |= set(super().run(self._step_s(left_s)))
             for act in list(self._going.values()):
                 act()
+            if self.array.time_s == now_s:
+                break  # a tile is halted: whoever halted it goes on
         return sorted(restarted)
 
     def _step_s(self, left_s: float) -> float:
