@@ -57,7 +57,7 @@ def test_a_wrong_name_is_answered_with_the_right_ones() -> None:
     with pytest.raises(UsageError, match=r"^hexx: No such file .* one of: digits .*\bhex\b.* pentominoes$"):
         load_task(shipped.shapes_file("hexx"))
     with pytest.raises(
-        UsageError, match=r"^hexx/model\.json: No such file .* one of: digits .*\bhex\b.* pentominoes$"
+        UsageError, match=r"^hexx/model\.json: No such file .* one of: damage digits .*\bhex\b.* pentominoes$"
     ):
         load_model(shipped.model_folder("hexx"))
 

@@ -107,7 +107,7 @@ def test_what_comes_with_tilenca_has_a_short_name_in_every_command_from_any_fold
             value = model_folder(value)
         assert value in (paths.ROOT / fits, [paths.ROOT / fits]), command
         assert re.search(
-            r"one\s+of:\s+digits\s.*\bhex\b.*\bpentominoes\b", parser.format_help(), re.DOTALL
+            r"one\s+of:\s+(damage\s+)?digits\s.*\bhex\b.*\bpentominoes\b", parser.format_help(), re.DOTALL
         ), command
     assert {"evaluate", "plot", "simulate"} <= set(takers)
 

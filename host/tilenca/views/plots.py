@@ -32,7 +32,7 @@ except ImportError as error:
 # Values in the order of columns; None: not measured there.
 Rows: TypeAlias = Sequence[Sequence[float | None]]
 HISTORY = ("iteration", "loss", "agreement")
-WIDEST, THINNER, THINNEST = 3.2, 0.2, 1.2  # lines: the first, each one after it, and none below
+WIDEST, THINNER, THINNEST = 3.2, 0.16, 1.2  # lines: the first, each one after it, and none below
 SMOOTHED = 60  # lines of fewer points are drawn as they are
 
 SUFFIXES = (".png", ".svg")
