@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from support.firmware import board_test_image
-from support.line_faults import Plug
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator import Array, EmulatedTile
+from tilenca.emulator.board_faults import Plug
 from tilenca.emulator.serve import STOCK_BOOTLOADER
 from tilenca.protocol.board_test import board_test_text
 
@@ -170,7 +170,7 @@ def test_a_resonator_is_measured_by_the_tile_beside_it(elf: Path, percent: float
 
 def test_loop_back_plugs_pass_at_both_rates(elf: Path) -> None:
     array = alone_with(elf)
-    plugs = [Plug(array[0], side) for side in (NORTH, EAST, SOUTH, WEST)]
+    plugs = [Plug(array, array[0], side) for side in (NORTH, EAST, SOUTH, WEST)]
 
     def play() -> None:
         for plug in plugs:

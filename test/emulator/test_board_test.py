@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from support.alone import alone
-from support.line_faults import Plug
 from tilenca.base.paths import ROOT
 from tilenca.base.sides import EAST, NORTH, SOUTH, WEST
 from tilenca.emulator import Array, EmulatedTile, LinkFault
+from tilenca.emulator.board_faults import Plug
 from tilenca.protocol.board_test import board_test_text
 from tilenca.protocol.line_reader import LineReader
 
@@ -129,7 +129,7 @@ def test_a_button_that_is_stuck_is_named_at_the_start(elf: Path) -> None:
 def test_loop_back_plugs_make_all_sides_pass(elf: Path) -> None:
     array = started(elf)
     tile = array[0]
-    plugs = [Plug(tile, side) for side in SIDES]
+    plugs = [Plug(array, tile, side) for side in SIDES]
     tile.write_serial(b"s")
     run(array, 2.2, plugs)
     assert sides(tile) == dict.fromkeys("NESW", "pass, loop-back")
@@ -142,10 +142,10 @@ def test_loop_back_plugs_make_all_sides_pass(elf: Path) -> None:
 def test_of_four_loop_back_plugs_the_broken_one_is_named(elf: Path, broken: int) -> None:
     array = started(elf)
     tile = array[0]
-    plugs = [Plug(tile, side) for side in SIDES]
+    plugs = {side: Plug(array, tile, side) for side in SIDES}
     tile.write_serial(b"s")
-    run(array, 1.2, plugs)
-    run(array, 1.2, [plug for plug in plugs if plug.side != broken])
+    run(array, 1.2, list(plugs.values()))
+    run(array, 1.2, [plug for side, plug in plugs.items() if side != broken])
     pin = "P{}{}".format(*tile.side_pin(broken, receiving=True))
     expected = dict.fromkeys("NESW", "pass, loop-back")
     expected["NESW"[broken]] = f"FAIL, heard nothing: no plug, no tile, or a broken line to {pin}"

@@ -70,20 +70,3 @@ class Vandal:
             if time_s >= now_s + AHEAD_S - 2 * STEP_S:
                 push(port, bit, round(time_s * rate), level)
             self._next = next(self._edges, None)
-
-
-class Plug:
-    """A loop-back plug: what leaves a side comes in there again, a little later. Play it every few ms."""
-
-    DELAY_S = 0.005
-
-    def __init__(self, tile: EmulatedTile, side: int) -> None:
-        self.side = side
-        self._tile = tile
-        self._pin = tile.side_pin(side, receiving=True)
-        self._probe = tile.probe(*tile.side_pin(side))
-
-    def play(self) -> None:
-        """Hands back the edges that have left since the last call."""
-        for edge in self._probe.read():
-            self._tile.push_edge(*self._pin, round((edge.time_s + self.DELAY_S) * CLOCK_HZ), edge.level)

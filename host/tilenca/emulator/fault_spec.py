@@ -20,10 +20,11 @@ import re
 from dataclasses import dataclass
 
 from tilenca.base.errors import UsageError
+from tilenca.protocol.stream_hands import MAX_SKEW_PPM
 
 EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2"
 LINK_KINDS = {"loss": 1.0, "flip": 1.0, "delay": 1000.0}  # with the most each can be
-TILE_KINDS = {"drift": 10_000.0, "adc": 100.0, "supply": 5.5, "skew": 100_000.0}
+TILE_KINDS = {"drift": 10_000.0, "adc": 100.0, "supply": 5.5, "skew": MAX_SKEW_PPM}
 SIGNED_KINDS = ("skew",)
 LEAST_V, USUAL_V = 1.8, 5.0
 MOMENT_KINDS = ("cut", "off", "remove", "reset", "turn")
