@@ -53,8 +53,8 @@ def test_a_pin_that_is_stuck_is_named_and_the_end_of_all_faults_ends_them() -> N
     assert faults == ["pins: FAIL, PE3 stays high: a short to the supply"]
 
 
-def test_a_resonator_is_off_for_the_board_beside_it() -> None:
-    with boards("resonator=2.5@2", ppm=0.0) as emulation:
+def test_a_clock_is_off_for_the_board_beside_it() -> None:
+    with boards("skew=25000@2", ppm=0.0) as emulation:
         [line] = [line for line in said(emulation, "t", 6.0) if line.startswith("clock")]
     assert "FAIL, the neighbour on E is 24 " in line
     assert "permille faster" in line
@@ -79,7 +79,6 @@ def test_a_plug_hands_back_what_a_clock_that_is_off_has_sent() -> None:
         ("high=PE3", "then @TILE"),
         ("joined=PE3@1", "joined takes two pins"),
         ("led=5@1", "led takes a link LED, 1 to 4"),
-        ("resonator=6@1", "percent within -5 to 5"),
         ("plug@1", "plug takes no value, then @TILE and a side"),
         ("high=PE3@1:2-1", "it ends before it begins"),
     ],

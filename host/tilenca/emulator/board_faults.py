@@ -5,7 +5,6 @@ KIND=VALUE@TILE[:FROM[-TO]], times in seconds; plug takes no value:
     high=PE3@7          the pin has a short to the supply; low=PE3@7: to ground
     joined=PH4+PH3@7    a bridge of solder: the second pin follows the first one
     led=3@7             link LED 3 is missing
-    resonator=2.5@7     tile 7 is 2.5 % faster, -2.5 slower
     plug@7E             a loop-back plug on the east side, which must have no cable
 """
 
@@ -29,17 +28,14 @@ VALUES = {
     "low": (PIN, "a pin, such as PE3"),
     "joined": (rf"{PIN}\+{PIN}", "two pins, such as PH4+PH3"),
     "led": (r"([1-4])", "a link LED, 1 to 4"),
-    "resonator": (r"(-?\d{1,2}(?:\.\d+)?)", "percent within -5 to 5"),
     "plug": ("", "no value"),
 }
 PIN_KINDS = ("high", "low", "joined")
 ALL_KINDS = (*KINDS, *VALUES)
 SHAPE = re.compile(r"([a-z]+)(?:=([^@:]+))?@(\d+)([NESW]?)(?::(\d+(?:\.\d+)?)(?:-(\d+(?:\.\d+)?))?)?")
 FIRST_LED_CHANNEL, OPEN, USUAL = 8, 1023, 512  # what the ADC says of an LED that is missing, and of one
-MOST_PERCENT = 5.0
 STEP_S, LEAST_S = 0.001, 1e-6  # bridges and plugs are looked at so often; an array runs no shorter
 PLUG_DELAY_S = 0.005  # what a plug hands back comes this much later
-PPM_OF_PERCENT = 1e4
 CLOCK_HZ = 16e6
 
 
@@ -94,8 +90,6 @@ def parse(text: str) -> FaultSpec | BoardFault:
     fault = BoardFault(text, kind, value.groups(), int(match[3]), match[4], from_s, to_s)
     if to_s is not None and to_s <= from_s:
         raise fault.refuse("it ends before it begins")
-    if kind == "resonator" and abs(float(value[1])) > MOST_PERCENT:
-        raise fault.refuse(f"resonator takes {wanted}")
     return fault
 
 
@@ -166,8 +160,6 @@ class BoardFaults(Faults):
                 self._going[fault] = lambda: tile.hold_pin(other, int(other_bit), tile.pin(one, int(one_bit)))
             case "led", (number,):
                 tile.set_analog(FIRST_LED_CHANNEL + int(number) - 1, OPEN)
-            case "resonator", (percent,):
-                self.skew(fault.tile - 1, PPM_OF_PERCENT * float(percent))
             case _:
                 self._going[fault] = Plug(self.array, tile, SIDES.index(fault.side)).play
 
@@ -179,8 +171,6 @@ class BoardFaults(Faults):
                 tile.hold_pin(port, int(bit), None)
             case "led", (number,):
                 tile.set_analog(FIRST_LED_CHANNEL + int(number) - 1, USUAL)
-            case "resonator", _:
-                self.skew(fault.tile - 1, 0.0)
             case _:
                 tile.hold_pin(*tile.side_pin(SIDES.index(fault.side), receiving=True), None)
 

@@ -89,23 +89,21 @@ def _look(labels: Sequence[str], shown: int) -> Look:
     return DARK_LOOK if shown == NOTHING else look_of_class(labels, shown)
 
 
-def of_recording(path: Path, ports: Sequence[str] = ()) -> Reel:
+def of_recording(path: Path) -> Reel:
     """The reel of a recording: a picture whenever a tile shows something else, falls silent or comes.
 
     Args:
         path: what `--record` wrote.
-        ports: patterns of the ports to show; none: all.
 
     Raises:
         UsageError: the file cannot be read, or is no recording.
-        NoDeviceError: no port matches.
         TilencaError: no tile says in it what it shows.
     """
     if len(shapes := recorded_shapes(path)) > 1:
         raise UsageError(
             f"{path}: has runs of {', '.join(shapes)}, one after the other; film the recording of one shape"
         )
-    choice = Choice(path, ports)
+    choice = Choice(path, ())
     events = list(choice)
     choice.complain(0.0)
     views = [view for view in _played(events) if view.tile is not None]
