@@ -20,6 +20,7 @@ def line(*shares: float) -> list[Row]:
     [
         ((1.0, 0.995, 0.8, 1.0), "5x4: holds up to 0.1, 0.80 at 0.2"),
         ((1.0, 0.99), "5x4: holds up to 0.1, the most that was asked"),
+        ((1.0, 0.9), "5x4: holds without any, 0.90 at 0.1"),
         ((0.4, 0.3), "5x4: holds nowhere, 0.40 at 0"),
     ],
 )

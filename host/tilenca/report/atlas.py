@@ -161,8 +161,10 @@ def endings(lines: Mapping[str, Sequence[Row]]) -> Iterator[str]:
         if held == len(shares):
             yield f"{which}holds up to {_value(shares[-1][0])}, the most that was asked"
             continue
-        so_far = f"up to {_value(shares[held - 1][0])}" if held else "nowhere"
-        yield f"{which}holds {so_far}, {shares[held][1]:.2f} at {_value(shares[held][0])}"
+        so_far = f"holds up to {_value(shares[held - 1][0])}" if held else "holds nowhere"
+        if held == 1 and not shares[0][0]:
+            so_far = "holds without any"
+        yield f"{which}{so_far}, {shares[held][1]:.2f} at {_value(shares[held][0])}"
 
 
 def _value(across: float | None) -> str:
