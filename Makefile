@@ -122,11 +122,13 @@ sweep: setup-train ## measure dead tiles and lost messages at three sizes, into 
 		--plot --json --out build/sweep >/dev/null
 	@$(TOOL) bench.sweep --table build/sweep --write docs/SWEEPS.md
 
-report: setup-train ## measure every claim again (some ten minutes of two cores), into docs/RESULTS.md and docs/results.html
+report: setup-train ## measure every claim again (some fifteen minutes of two cores), into docs/RESULTS.md and docs/results.html
 	@$(PIO) run -s -e $(ENV)
+	@$(TILENCA) export --model digits-hands --build
 	@$(TILENCA) report --out build/report
 	@sed 's/`report.html`/[results.html](results.html)/' build/report/RESULTS.md > docs/RESULTS.md
 	@cp build/report/report.html docs/results.html
+	@rm -f docs/images/results-*.svg
 	@cp build/report/images/results-*.svg docs/images/
 	@$(TOOL) docs.claims
 

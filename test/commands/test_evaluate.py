@@ -333,3 +333,29 @@ def test_a_drawing_with_more_tiles_than_ids_is_not_emulated(
     shapes.write_text(f'[[shape]]\nlabel = "0"\ngrid = """\n{block}\n"""\n')
     assert cli.main(["evaluate", "--engine", "emulator", "--shapes", str(shapes)]) == 2
     assert "shape '0' has 400 tiles; the most that ids allow are 255" in capsys.readouterr().err
+
+
+def test_times_of_simulated_tiles_may_be_others(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("--steps", "20", "--runs", "20", "--seed", "3")
+    usual = evaluate(capsys, *words)
+    assert evaluate(capsys, *words, "--boot-spread", "0.2", "--latency", "0.1-0.9") == usual
+    quick, slow = (evaluate(capsys, *words, "--latency", latency) for latency in ("0.1", "0.95"))
+    assert quick["agreed_by_step"][7] > slow["agreed_by_step"][7]
+    assert len(usual["agreed_by_step"]) == 20
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--plug", "new"], "add --engine emulator"),
+        (["--latency", "soon"], "--latency: 'soon' is neither"),
+        (["--engine", "emulator", "--latency", "0.5"], "no --latency"),
+        (["--engine", "emulator", "--plug", "new", "--boot-spread", "2"], "leave --boot-spread out"),
+        (["--suite", "--boot-spread", "2"], "leave --boot-spread out"),
+    ],
+)
+def test_times_that_mean_nothing_there_are_refused(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["evaluate", *words]) == 2
+    assert said in capsys.readouterr().err

@@ -35,7 +35,7 @@ def test_a_report_is_measured_once_and_each_number_repeats(
     assert fits("report", result)
     assert json.loads((out / "report.json").read_text())["rows"] == result["rows"]
     page = (out / "report.html").read_text()
-    assert page.count("<svg") == 2
+    assert page.count("<svg") == 3
     assert "The field" in page
     assert {row["key"].split(".")[0] for row in result["rows"]} == {"paper", "edges", "gap"}
     for row in result["rows"]:

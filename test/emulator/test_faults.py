@@ -7,6 +7,11 @@ import pytest
 
 from support.emulate import emulate, report
 from tilenca.base.paths import FIRMWARE_ELF
+from tilenca.base.sides import EAST, WEST
+from tilenca.emulator.array import Array
+from tilenca.emulator.fault_spec import parse
+from tilenca.emulator.faults import Faults
+from tilenca.emulator.states import SENDING
 
 
 @pytest.fixture(autouse=True)
@@ -123,3 +128,18 @@ def test_a_fault_that_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], 
     status, out, err = emulate(capsys, "--fault", spec)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"--fault '{spec}': {fact}" in err
+
+
+def test_a_fault_waits_for_its_time_where_a_tile_is_halted_before() -> None:
+    with Array(FIRMWARE_ELF, 2, [(0, EAST, 1, WEST)]) as array:
+        faults = Faults(array, [(0, EAST, 1, WEST)], 1)
+        faults.add(parse("off@2:0.3"))
+        array[0].set_breakpoint(SENDING)
+        faults.run(0.4)
+        assert array.halted
+        assert array.time_s < 0.3
+        assert array[1].powered
+        array[0].set_breakpoint(SENDING, on=False)
+        array[0].resume()
+        faults.run(0.4)
+        assert not array[1].powered

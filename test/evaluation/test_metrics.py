@@ -10,7 +10,7 @@ from support.measurements import row
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
 from tilenca.evaluation.cases import Case
-from tilenca.evaluation.metrics import Runs, Target, measure, wilson
+from tilenca.evaluation.metrics import Runs, Target, measure, median_interval, wilson
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
@@ -95,3 +95,11 @@ def test_where_the_dash_is_right_it_is_not_a_miss() -> None:
     )
     found = measure("unknown", "none", runs, 1, None)
     assert (found.share, found.dash, found.wrong, found.split) == (0.5, 0, 0.25, 0.25)
+
+
+def test_the_interval_of_a_median_is_between_order_statistics_and_may_have_no_upper_end() -> None:
+    hundred = np.arange(1.0, 101.0)
+    low, high = median_interval(hundred)
+    assert (low, high) == (40.0, 61.0)  # the 40th and the 61st of 100 (Conover, 1999)
+    assert median_interval(np.array([1.0, 2.0, np.inf])) == (1.0, np.inf)
+    assert median_interval(np.array([3.0])) == (3.0, 3.0)

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from tilenca import cli
-from tilenca.report.experiments import EXPERIMENTS, TITLES, Experiment, chosen
+from tilenca.report.experiment import Experiment
+from tilenca.report.experiments import EXPERIMENTS, TITLES, chosen
 from tilenca.report.measure import Call, command_of
 from tilenca.report.rows import READERS
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from support.restless_grids import TILES
-from tilenca.simulator.conditions import Conditions, Fault
+from tilenca.simulator.conditions import Conditions, Fault, parse_latency
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,16 @@ def test_conditions_that_make_no_sense_are_refused(settings: dict[str, Any], sai
 def test_faults_that_make_no_sense_are_refused(settings: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="fault"):
         Fault(tiles=TILES, **settings)
+
+
+@pytest.mark.parametrize(
+    ("text", "latency"), [("0.5", (0.5, 0.5)), ("0.1-0.9", (0.1, 0.9)), ("0.98", (0.98, 0.98))]
+)
+def test_a_latency_is_one_number_of_periods_or_two(text: str, latency: tuple[float, float]) -> None:
+    assert parse_latency(text) == latency
+
+
+@pytest.mark.parametrize("text", ["", "0", "soon", "0.5-", "0.9-0.1", "-0.5", "0.5-1", "nan", "0.1-0.2-0.3"])
+def test_other_latencies_are_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="periods"):
+        parse_latency(text)

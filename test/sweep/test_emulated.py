@@ -13,7 +13,7 @@ from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.file import Shape
 from tilenca.simulator.simulator import MIXED
-from tilenca.sweep.emulated import Image, run_emulated
+from tilenca.sweep.emulated import Image, plugged, run_emulated
 
 pytestmark = pytest.mark.skipif(
     not paths.FIRMWARE_ELF.exists(), reason="run `make setup` to build the firmware"
@@ -60,3 +60,18 @@ def test_an_image_with_another_model_is_refused_with_the_remedy(image: Image) ->
     assert str(caught.value) == (
         f"given.elf: carries model {ours}, not {theirs}; run: tilenca export --model models/digits && pio run"
     )
+
+
+def test_a_tile_that_is_plugged_in_counts_from_there(image: Image) -> None:
+    for kind, away_s, back_s in (("again", 1.2, 2.0), ("new", 0.0, 1.2)):
+        settings = plugged(SETTINGS, kind, 3, 20, 20)
+        (fault,) = settings.faults
+        assert (fault.kind, fault.from_s, fault.to_s) == ("off", away_s, back_s)
+        assert 1 <= int(fault.where) <= 3
+        assert settings.seconds == pytest.approx(back_s + 0.2 + 21 * 0.02)
+        run = run_emulated(image, BAR, settings)
+        assert run.right == 1.0
+        assert 0.1 < run.agreed_s < 0.6
+        assert 1 <= run.converged_at <= 20
+    tiles = {plugged(replace(SETTINGS, seed=seed), "new", 3, 20, 20).faults[0].where for seed in range(20)}
+    assert tiles == {"1", "2", "3"}

@@ -70,3 +70,11 @@ def test_tasks_are_as_long_as_asked() -> None:
     tasks = tasks_of(blocks, 10 * blocks[0].cost_s)
     assert {len(task) for task in tasks} == {10}
     assert tasks_of([], 1.0) == []
+
+
+def test_an_axis_that_came_later_leaves_the_chance_of_rows_that_do_not_vary_it() -> None:
+    usual = row("loss=0.1")
+    before = {name: value for name, value in usual.point.items() if name != "latency"}
+    assert usual.key == replace(usual, point=before).key
+    assert row("loss=0.1", "latency=0.1-0.9").key == usual.key
+    assert row("loss=0.1", "latency=0.5").key != usual.key

@@ -1,9 +1,11 @@
 """The figures of the report."""
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 from tilenca.report.document import Figure
-from tilenca.report.rows import SHARE, Row
+from tilenca.report.rows import SHARE, STEPS, Row
+from tilenca.report.words import Mark
 from tilenca.views.report import draw_figure
 
 
@@ -22,3 +24,12 @@ def test_a_figure_is_an_element_of_svg_the_same_every_time() -> None:
     root = ElementTree.fromstring(svg)
     assert root.tag.endswith("svg")
     assert len(svg) < 60_000
+
+
+def test_what_others_do_is_marked_with_their_names_and_times_need_no_share() -> None:
+    lines = {"": [replace(row(0.1, 7.0), unit=STEPS), replace(row(0.9, 12.0), unit=STEPS)]}
+    marks = (Mark(0.1, 0.2, "others"), Mark(0.5, None, "bricks"))
+    plain = draw_figure(Figure("edges", "updates", "periods", lines))
+    marked = draw_figure(Figure("edges", "updates", "periods", lines, marks=marks))
+    assert ElementTree.fromstring(marked).tag.endswith("svg")
+    assert len(marked) > len(plain)

@@ -100,10 +100,14 @@ def emulate_model(
 
 
 def tell_results(args: argparse.Namespace, results: list[EmulationResult], told: Sequence[str] = ()) -> int:
-    """Prints the results and what was noted, but for what was told before; returns the exit status."""
+    """Prints the results and what was noted, but for what was told before; returns the exit status.
+
+    It is 1 where a tile is wrong, or where a state differs from the simulator's.
+    """
     print_results(args, results)
     tell_notes(results, told)
-    return 0 if all(result.report["all_right"] for result in results) else 1
+    same = all(result.report.get("states", {}).get("first_difference") is None for result in results)
+    return 0 if same and all(result.report["all_right"] for result in results) else 1
 
 
 def tell_notes(results: list[EmulationResult], told: Sequence[str] = ()) -> None:
@@ -130,7 +134,7 @@ def _prepare(args: argparse.Namespace) -> _Run:
         told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
     else:
         told = _foreign(hello, known and known[0], task)
-    args.foreign = bool(told)
+    args.foreign, args.own_model = bool(told), known and known[0]
     for note in told:
         warn(f"tilenca: {note}")
     settings = EmulationSettings(

@@ -112,6 +112,12 @@ def add_emulate_arguments(parser: argparse.ArgumentParser) -> None:
         help="one shape: wait for avr-gdb at this tile; again for more",
     )
     add("--record", type=Path, metavar="F", help="write all telemetry to F, one JSON object per line")
+    add(
+        "--check-states",
+        action="store_true",
+        help="compare every state of every tile with the fast simulator's, byte by byte, given the same "
+        "messages in the same order",
+    )
     look = parser.add_mutually_exclusive_group()
     look.add_argument("--json", action="store_true", help="one JSON document on stdout")
     look.add_argument("--watch", action="store_true", help="show the tiles while they run, in real time")
@@ -141,6 +147,9 @@ def check_combinations(args: argparse.Namespace) -> None:
     for option, given in (("--record", args.record), ("--updates", args.updates)):
         if serving and given is not None:
             raise UsageError(f"{option} does nothing with --serve; use `tilenca monitor` on the served ports")
+    for option in ("watch", "serve", "gdb"):
+        if args.check_states and getattr(args, option):
+            raise UsageError(f"--check-states does not go with --{option}; leave one of them out")
     if args.pin and args.vcd is None:
         raise UsageError("--pin does nothing without --vcd; add --vcd FILE or leave it out")
     if args.keep_running and not serving:

@@ -6,13 +6,14 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
 from tilenca.base.stdio import warn
+from tilenca.commands.emulate_states import StateCheck
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
 from tilenca.emulator.eeprom_files import save_eeprom
 from tilenca.emulator.experiment import Emulation
@@ -154,17 +155,24 @@ def _run_one(
     tell(shape.name, 0.0, "laying out")
     emulation = lay_out(shape)
     with emulation.array, observe(emulation, args, stopped.is_set) as on_slice:
+        check = StateCheck(emulation, args.own_model) if args.check_states else None
 
         def look(running: Emulation, heard: list[Heard]) -> None:
             tell(shape.name, running.share_done(), f"{running.array.time_s:.2f} s emulated")
             if stopped.is_set():
                 raise KeyboardInterrupt
             on_slice()
+            if check is not None:
+                check.look()
             if args.record is not None:
                 lines.extend(record_line(shape, line) for line in heard)
 
         emulation.run(look)
-        return result_of(args, emulation, task, started), lines
+        result = result_of(args, emulation, task, started)
+        if check is not None:
+            words = f"{result.verdict}; {check.words()}"
+            result = replace(result, report=result.report | {"states": check.report()}, verdict=words)
+        return result, lines
 
 
 def print_results(args: argparse.Namespace, results: Sequence[EmulationResult]) -> None:

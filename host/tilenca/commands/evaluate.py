@@ -3,8 +3,7 @@
 import argparse
 import json
 import threading
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,28 +17,31 @@ from tilenca.commands.arguments import (
     add_model_argument,
     add_shapes_argument,
     count,
+    number,
     seed,
     size,
 )
+from tilenca.commands.emulate_options import MAX_BOOT_SPREAD_S
+from tilenca.commands.evaluate_results import RunResults, print_report, report_of
 from tilenca.commands.origin import shapes_or_own
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY
-from tilenca.evaluation.metrics import answer_shares, convergence_times
 from tilenca.evaluation.suites import make_suite, recorded_aims
 from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 from tilenca.shapes.file import too_large
 from tilenca.shapes.sizes import Size, size_name
-from tilenca.simulator.conditions import Conditions
+from tilenca.simulator.conditions import Conditions, parse_latency
 from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Simulator
-from tilenca.sweep.emulated import EmulatedRun, Image, run_emulated
+from tilenca.sweep.axes import STEP_S
+from tilenca.sweep.emulated import PLUGS, EmulatedRun, Image, plugged, run_emulated
 from tilenca.views.progress import show_progress
-from tilenca.views.table import table
 
 # Options that --suite does not take, and their defaults.
 FIXED_BY_SUITE = {
@@ -50,27 +52,11 @@ FIXED_BY_SUITE = {
     "loss": 0.0,
     "lost": "held",
     "dead": 0.0,
+    "plug": None,
+    "boot_spread": None,
+    "latency": None,
 }
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
-
-
-@dataclass(frozen=True)
-class RunResults:
-    """The measured runs, one entry per run.
-
-    Attributes:
-        chosen: (R,) the drawing.
-        right: (R,) share of tiles that show the right class at the end.
-        converged_at: (R,) step from which all were right to the end; infinite for none.
-        regressed: (R,) whether a tile was wrong after step 60, in runs longer than that.
-        answers: (R,) what all tiles showed at the end, see `Simulator.answers`; None: not measured.
-    """
-
-    chosen: NDArray[np.int64]
-    right: NDArray[np.float32]
-    converged_at: NDArray[np.float64]
-    regressed: NDArray[np.bool_]
-    answers: NDArray[np.int64] | None = None
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -108,7 +94,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="TEXT",
         help="of the suite, only rows with this in their name, or =NAME for one row; again for more",
     )
+    parser.add_argument(
+        "--plug",
+        choices=PLUGS,
+        help="emulator: in each run a tile is plugged in while the others run, and steps and times count "
+        "from then: one that was pulled before (again), or that was never there (new)",
+    )
     add_condition_arguments(parser)
+    parser.add_argument(
+        "--boot-spread",
+        type=number(0.0, MAX_BOOT_SPREAD_S),
+        metavar="S",
+        help="tiles are switched on within 0..S seconds (fast: 0.2; emulator: 1.0)",
+    )
+    parser.add_argument(
+        "--latency",
+        metavar="L",
+        help="fast: what a message takes, in periods, such as 0.5, or each tile's between 0.1-0.9 (0.1-0.9)",
+    )
     parser.add_argument(
         "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
     )
@@ -130,8 +133,10 @@ def run(args: argparse.Namespace) -> int:
     chosen = np.repeat(np.arange(len(drawings)), runs)
     if args.engine == "emulator":
         outcome = _emulate(args, model, drawings, chosen)
+    elif args.plug is not None:
+        raise UsageError("--plug is for emulated tiles; add --engine emulator")
     else:
-        conditions = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
+        conditions = _conditions(args)
         random = np.random.default_rng(args.seed)
         simulator = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random)
         trajectory = simulator.run(args.steps)
@@ -139,11 +144,11 @@ def run(args: argparse.Namespace) -> int:
         outcome = RunResults(
             chosen, trajectory.right[-1], trajectory.converged_at, regressed, simulator.answers()
         )
-    report = _report(args, model, drawings, runs, outcome)
+    report = report_of(args, model, drawings, runs, outcome)
     if args.json:
         print(json.dumps(report))
     else:
-        _print(report)
+        print_report(report)
     return 0
 
 
@@ -151,7 +156,7 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     """The measurements of the model card; the same seed and number of runs repeat them."""
     for option, usual in FIXED_BY_SUITE.items():
         if getattr(args, option) != usual:
-            raise UsageError(f"--suite sets its own conditions; leave --{option} out")
+            raise UsageError(f"--suite sets its own conditions; leave --{option.replace('_', '-')} out")
     aims = recorded_aims(model)
     task, sizes = load_training_task(args.shapes, aims.stretch, model.dimensions.max_classes, model.labels)
     suite = make_suite(task, sizes, model.labels, aims, args.seed)
@@ -167,6 +172,19 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     else:
         print(f"{metrics['targets_held']} targets held")
     return 0
+
+
+def _conditions(args: argparse.Namespace) -> Conditions:
+    """Of simulated runs."""
+    usual = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
+    if args.boot_spread is not None:
+        usual = replace(usual, boot=args.boot_spread / STEP_S)
+    if args.latency is None:
+        return usual
+    try:
+        return replace(usual, latency=parse_latency(args.latency))
+    except ValueError as error:
+        raise UsageError(f"--latency: {error}") from error
 
 
 def _at_size(drawings: Drawings, wanted: Size) -> Drawings:
@@ -198,8 +216,12 @@ def _emulate(
     args: argparse.Namespace, model: Model, drawings: Drawings, chosen: NDArray[np.int64]
 ) -> RunResults:
     """Runs the firmware image, one emulation for each entry of `chosen`."""
-    if args.schedule != "clock" or args.loss or args.dead:
-        raise UsageError("--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead")
+    if args.schedule != "clock" or args.loss or args.dead or args.latency:
+        raise UsageError(
+            "--engine emulator runs tiles as they are: on their clocks, no --loss, no --dead, no --latency"
+        )
+    if args.plug and args.boot_spread is not None:
+        raise UsageError("--plug: the others are switched on within its own time; leave --boot-spread out")
     if (remedy := too_large(drawings.shapes)) is not None:
         raise UsageError(f"--engine emulator: {remedy}")
     beside = paths.model_elf(args.model)
@@ -207,10 +229,17 @@ def _emulate(
     if not elf.exists():
         raise BuildError(f"{elf}: no firmware image; {build_remedy()}")
     image = Image(elf, firmware_settings(elf), model, args.model)
+    period_ms = image.defaults.period_ms if image.defaults else DEFAULT_PERIOD_MS
+    if args.plug and (alone := [shape.name for shape in drawings.shapes if len(shape.cells) == 1]):
+        raise UsageError(f"--plug: '{alone[0]}' has one tile, and no others; leave it out")
 
     def run(number: int, stopped: threading.Event) -> EmulatedRun:
         shape = drawings.shapes[chosen[number]]
         settings = EmulationSettings(updates=args.steps, seed=args.seed * 1000 + number)
+        if args.boot_spread is not None:
+            settings = replace(settings, boot_spread_s=args.boot_spread)
+        if args.plug:
+            settings = plugged(settings, args.plug, len(shape.cells), args.steps, period_ms)
 
         def look(running: Emulation, _: list[Heard]) -> None:
             tell(f"{shape.name}, run {number + 1}", running.share_done(), f"of {len(chosen)}")
@@ -223,66 +252,5 @@ def _emulate(
         results = [result for _, result in run_side_by_side(run, range(len(chosen)))]
     right = np.array([result.right for result in results], np.float32)
     converged_at = np.array([result.converged_at for result in results])
-    return RunResults(chosen, right, converged_at, np.zeros(len(chosen), np.bool_))
-
-
-def _report(
-    args: argparse.Namespace, model: Model, drawings: Drawings, runs: int, outcome: RunResults
-) -> dict[str, Any]:
-    agreed = outcome.right >= 1.0
-    per_shape = []
-    for number, shape in enumerate(drawings.shapes):
-        mine = outcome.chosen == number
-        per_shape.append(
-            {
-                "label": shape.label,
-                "name": shape.name,
-                "file": drawings.sources[drawings.groups[number]]["file"],
-                "grid": shape.grid,
-                "cells_right": round(float(outcome.right[mine].mean()), 6),
-                "total_agreement": round(float(agreed[mine].mean()), 6),
-                "steps_to_agreement": convergence_times(outcome.converged_at[mine]),
-            }
-        )
-    return {
-        "model": f"{model.model_id:04X}",
-        "engine": args.engine,
-        "schedule": args.schedule,
-        "steps": args.steps,
-        "runs": runs,
-        "cells_right": round(float(outcome.right.mean()), 6),
-        "total_agreement": round(float(agreed.mean()), 6),
-        "missed": _missed(drawings, outcome),
-        "steps_to_agreement": convergence_times(outcome.converged_at),
-        "runs_with_a_regression": int(outcome.regressed.sum()),
-        "per_shape": per_shape,
-    }
-
-
-def _missed(drawings: Drawings, outcome: RunResults) -> dict[str, float] | None:
-    """The shares of the runs in which all tiles show the dash, all another class, or tiles differ."""
-    if outcome.answers is None:
-        return None
-    shares = answer_shares(drawings, outcome.chosen, outcome.answers)
-    return dict(zip(("dash", "wrong", "split"), shares, strict=True))
-
-
-def _print(report: dict[str, Any]) -> None:
-    def texts(times: dict[str, float | None]) -> list[str]:
-        return ["never" if value is None else f"{value:.0f}" for value in times.values()]
-
-    def cells(name: str, file: str, row: dict[str, Any]) -> list[str]:
-        shares = f"{row['cells_right']:.4f}", f"{row['total_agreement']:.4f}"
-        return [name, file, *shares, *texts(row["steps_to_agreement"])]
-
-    rows = [cells(row["name"], row["file"], row) for row in report["per_shape"]]
-    rows.append(cells("all", "", report))
-    print(
-        f"model {report['model']}, engine {report['engine']}, schedule {report['schedule']}: after "
-        f"{report['steps']} steps, {report['runs']} runs per shape; median and 95 %: steps until all tiles "
-        "are right and stay so"
-    )
-    print(table(("shape", "file", "cells right", "all right", "median", "95 %"), rows))
-    if report["missed"] is not None:
-        shares = ", ".join(f"{kind} {share:.4f}" for kind, share in report["missed"].items())
-        print(f"not right: {shares} of the runs; split: tiles of one body show different answers")
+    agreed_s = np.array([result.agreed_s for result in results])
+    return RunResults(chosen, right, converged_at, np.zeros(len(chosen), np.bool_), agreed_s=agreed_s)

@@ -24,10 +24,11 @@ from tilenca.views.progress import show_progress
 
 if TYPE_CHECKING:
     from tilenca.report.document import Facts
+    from tilenca.report.experiment import Experiment
     from tilenca.report.measure import Call, Folder, Results
 
 REMEDY = "make room there, or give another --out"
-MINUTES = {False: "some ten minutes of two cores", True: "some two minutes of two cores"}
+MINUTES = {False: "some fifteen minutes of two cores", True: "some two minutes of two cores"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measures what the folder lacks, and writes page, Markdown, figures and JSON."""
-    from tilenca.report.document import figures_of, gap_of, render, sections_of
+    from tilenca.report.document import Gap, apart_of, figures_of, gap_of, render, sections_of
     from tilenca.report.experiments import chosen
     from tilenca.report.measure import Folder, calls_of, rows_of
     from tilenca.views.report import draw_figure
@@ -59,20 +60,31 @@ def run(args: argparse.Namespace) -> int:
     model, image = load_model(paths.DEFAULT_MODEL), firmware_image()
     existing_image(image, build_remedy())
     _check_firmware(image, model)
-    experiments = chosen(args.quick)
-    measured = [*paths.MODELS.glob("*/weights.npz"), *paths.DEFAULT_SHAPES.parent.glob("*.toml"), image]
+    experiments, images = _measurable(chosen(args.quick))
+    measured = [
+        *paths.MODELS.glob("*/weights.npz"),
+        *paths.DEFAULT_SHAPES.parent.glob("*.toml"),
+        image,
+        *images,
+    ]
     folder = Folder(args.out / "results", measured)
     results = _measure(args, calls_of(experiments, args.quick), folder)
     rows = rows_of(experiments, args.quick, results)
-    figures = [replace(figure, svg=draw_figure(figure)) for figure in figures_of(experiments, rows)]
+    figures = [
+        figure if figure.maps else replace(figure, svg=draw_figure(figure))
+        for figure in figures_of(experiments, rows)
+    ]
     sections = sections_of(experiments, rows, figures)
+    gap = Gap(gap_of(rows), apart_of(rows))
     facts = _facts(args, f"{model.model_id:04X}")
     every = [row.as_json() for mine in rows.values() for row in mine]
     files = {"report.json": json.dumps({"rows": every}, indent=1)}
     for name, template in (("report.html", "page.html.j2"), ("RESULTS.md", "results.md.j2")):
-        files[name] = render(template, facts, sections, gap_of(rows))
+        files[name] = render(template, facts, sections, gap)
     for section in sections:
         for number, figure in enumerate(section["figures"], 1):
+            if figure.maps:
+                continue
             files[f"images/results-{section['key']}-{number}.svg"] = figure.svg + "\n"
     (args.out / "images").mkdir(exist_ok=True)
     for name, text in files.items():
@@ -82,6 +94,24 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(f"{len(every)} rows; open {args.out / 'report.html'}")
     return 0
+
+
+def _measurable(experiments: "list[Experiment]") -> "tuple[list[Experiment], list[Path]]":
+    """The experiments whose firmware is built, and the images beside models; says which are left out."""
+    kept, images = [], []
+    for experiment in experiments:
+        folder = experiment.emulated_model(paths.MODELS)
+        if folder not in (None, paths.DEFAULT_MODEL):
+            beside = paths.model_elf(folder)
+            if not beside.exists():
+                warn(
+                    f"left out: {experiment.key}, since no firmware of models/{folder.name} is built; "
+                    f"run: tilenca export --model {folder.name} --build"
+                )
+                continue
+            images.append(beside)
+        kept.append(experiment)
+    return kept, images
 
 
 def _check_firmware(image: Path, model: Model) -> None:

@@ -152,12 +152,16 @@ class Faults:
         start_s = self.array.time_s
         end_s = start_s + seconds
         while self._due and self._due[0][0] <= end_s:
-            time_s, _, action = self._due.pop(0)
+            time_s, _, action = self._due[0]
             if time_s > self.array.time_s:
                 self.array.run(time_s - self.array.time_s)
+                if self.array.halted:
+                    break  # at a breakpoint, before that time
+            del self._due[0]
             action()
-        if end_s > self.array.time_s:
-            self.array.run(end_s - self.array.time_s)
+        else:
+            if end_s > self.array.time_s:
+                self.array.run(end_s - self.array.time_s)
         return [tile for tile, time_s in self.restarted_s.items() if time_s >= start_s]
 
     @property

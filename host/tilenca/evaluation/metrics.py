@@ -178,6 +178,15 @@ def convergence_times(converged_at: NDArray[np.float64]) -> dict[str, float | No
     return {"median": quantile(0.5), "p95": quantile(0.95)}
 
 
+def median_interval(values: NDArray[np.float64]) -> tuple[float, float]:
+    """95 % confidence interval of a median, by order statistics; infinite values may be among them."""
+    ordered = np.sort(values)
+    half = 0.5 * 1.959964 * math.sqrt(len(ordered))
+    low = max(0, math.floor(0.5 * len(ordered) - half) - 1)
+    high = min(len(ordered) - 1, math.ceil(0.5 * len(ordered) + half))
+    return float(ordered[low]), float(ordered[high])
+
+
 def measure(
     key: str, name: str, runs: Runs, mark: int, target: Target | None, changed_at: int = 0
 ) -> Measurement:

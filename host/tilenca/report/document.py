@@ -7,9 +7,12 @@ from typing import Any
 import jinja2
 import markupsafe
 
-from tilenca.report.experiments import CONVERGED, INTRODUCTIONS, TITLES, Experiment
+from tilenca.report.atlas import HeatMap, endings, heat_maps
+from tilenca.report.experiment import Experiment
+from tilenca.report.experiments import CONVERGED, EDGES, INTRODUCTIONS, TITLES
 from tilenca.report.field import field_of
 from tilenca.report.rows import SHARE, Row
+from tilenca.report.words import Mark, marks_of, why
 
 POINTS = 100.0
 
@@ -23,6 +26,11 @@ class Figure:
         title: what it shows.
         axis: what it shows that along.
         rows: by the name of each line.
+        key: of the experiment that is drawn, or of the first one.
+        why: where the claim ends, and why, in words; empty where the section's introduction says it.
+        ends: how far each line holds.
+        marks: what others do there.
+        maps: its heat maps; it has these, or a picture.
         svg: the picture; empty until it is drawn.
     """
 
@@ -30,6 +38,11 @@ class Figure:
     title: str
     axis: str
     rows: Mapping[str, Sequence[Row]]
+    key: str = ""
+    why: str = ""
+    ends: tuple[str, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    maps: tuple[HeatMap, ...] = ()
     svg: str = ""
 
 
@@ -56,22 +69,45 @@ class Facts:
 
 def figures_of(experiments: Sequence[Experiment], rows: Mapping[str, Sequence[Row]]) -> list[Figure]:
     """The figures: the rows along an axis of experiments with the same figure."""
-    first: dict[str, Experiment] = {}
-    lines: dict[str, dict[str, list[Row]]] = {}
+    drawn: dict[str, list[Experiment]] = {}
     for experiment in experiments:
         if experiment.figure:
-            first.setdefault(experiment.figure, experiment)
-            for row in rows[experiment.key]:
-                lines.setdefault(experiment.figure, {}).setdefault(row.line, []).append(row)
+            drawn.setdefault(experiment.figure, []).append(experiment)
     return [
-        Figure(
-            first[title].section,
-            title,
-            first[title].axis,
-            {name: sorted(mine, key=lambda row: row.across or 0) for name, mine in of_title.items()},
-        )
-        for title, of_title in lines.items()
+        _figure(title, mine[0], [row for one in mine for row in rows[one.key]])
+        for title, mine in drawn.items()
     ]
+
+
+def _figure(title: str, first: Experiment, rows: Sequence[Row]) -> Figure:
+    about = first.section, title, first.axis
+    if first.heat:
+        return Figure(*about, {}, first.key, why(first.key), maps=tuple(heat_maps(rows)))
+    lines: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.across is not None:
+            lines.setdefault(row.line, []).append(row)
+    ordered = {name: sorted(mine, key=lambda row: row.across or 0) for name, mine in lines.items()}
+    ends = tuple(endings(ordered)) if first.section == EDGES else ()
+    return Figure(*about, ordered, first.key, why(first.key), ends, marks_of(first.key))
+
+
+def apart_of(rows: Mapping[str, Sequence[Row]]) -> tuple[float, int] | None:
+    """By how many points simulator and emulated tiles differ at most, update by update, and after which.
+
+    In the simulator all messages are as slow as those of a tile to the north and south. None: a report
+    without these.
+    """
+    keys = [f"gap.{engine}.{CONVERGED}" for engine in ("slow", "tiles")]
+    if not all(key in rows for key in keys):
+        return None
+    both = ([row for row in rows[key] if row.across is not None] for key in keys)
+    apart = [
+        (abs(one.value - other.value) * POINTS, int(one.across or 0))
+        for one, other in zip(*both, strict=True)
+        if one.value is not None and other.value is not None
+    ]
+    return max(apart)
 
 
 def gap_of(rows: Mapping[str, Sequence[Row]]) -> float | None:
@@ -95,8 +131,9 @@ def sections_of(
             "rows": [
                 row
                 for experiment in experiments
-                if experiment.section == section and experiment.reader != "curve"
+                if experiment.section == section
                 for row in rows[experiment.key]
+                if not row.only_drawn
             ],
         }
         for section, title in TITLES.items()
@@ -107,7 +144,10 @@ def value_text(row: Row) -> str:
     """The number as people read it."""
     if row.value is None:
         return "never"
-    return f"{row.value:.3f}" if row.unit == SHARE else f"{row.value:g} {row.unit}"
+    if row.unit == SHARE:
+        return f"{row.value:.3f}"
+    number = f"{row.value:,}" if isinstance(row.value, int) else f"{row.value:g}"
+    return f"{number} {row.unit}"
 
 
 def interval_text(row: Row) -> str:
@@ -122,6 +162,16 @@ def verdict(row: Row) -> str:
     return "held" if row.value >= row.target else "missed"
 
 
+def capitalise(text: str) -> str:
+    """A text that begins a line: its first letter is a capital."""
+    return text[:1].upper() + text[1:]
+
+
+def short(title: str) -> str:
+    """What a figure of the atlas varies: its title without what all of them show."""
+    return title.rpartition(": ")[2]
+
+
 def bold(text: str) -> str:
     """HTML of a text with `**bold**` parts, as markup; everything else in it is text."""
     parts = [markupsafe.escape(part) for part in text.split("**")]
@@ -131,14 +181,27 @@ def bold(text: str) -> str:
     )
 
 
-def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], gap: float | None) -> str:
+@dataclass(frozen=True)
+class Gap:
+    """How far simulator and emulated tiles are apart.
+
+    Attributes:
+        converged: see `gap_of`.
+        by_update: see `apart_of`.
+    """
+
+    converged: float | None
+    by_update: tuple[float, int] | None = None
+
+
+def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], gap: Gap) -> str:
     """A document.
 
     Args:
         template: `page.html.j2` or `results.md.j2`.
         facts: of the report.
         sections: of `sections_of`.
-        gap: of `gap_of`.
+        gap: between simulator and emulated tiles.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("tilenca.report"),
@@ -148,7 +211,14 @@ def render(template: str, facts: Facts, sections: Sequence[Mapping[str, Any]], g
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"value": value_text, "interval": interval_text, "verdict": verdict, "bold": bold}
+    environment.filters |= {
+        "value": value_text,
+        "interval": interval_text,
+        "verdict": verdict,
+        "bold": bold,
+        "capitalise": capitalise,
+        "short": short,
+    }
     values = {row.key: value_text(row) for section in sections for row in section["rows"]}
     field = field_of(values, facts.quick)
     return environment.get_template(template).render(facts=facts, sections=sections, gap=gap, field=field)

@@ -15,7 +15,7 @@ from tilenca.base.whole_file import write_whole
 from tilenca.cluster.client import Cluster
 from tilenca.cluster.fingerprint import fingerprint
 from tilenca.cluster.tasks import run_tasks
-from tilenca.report.experiments import Experiment
+from tilenca.report.experiment import Experiment
 from tilenca.report.rows import READERS, Row, Words
 
 Results = dict[str, dict[str, Any]]
@@ -99,7 +99,7 @@ class Folder:
 
 def calls_of(experiments: Sequence[Experiment], quick: bool) -> list[Call]:
     """The calls of a report, the longest first, so that no core waits for one that began late."""
-    first = ("suite", "hands", "paper.settings", "gap.tiles", "edges", "paper.tiles")
+    first = ("suite", "gap.tiles", "plug", "hands", "paper.settings", "gap.states", "edges", "paper.tiles")
     rank = {key: number for number, key in enumerate(first)}
     calls = [Call(experiment.key, experiment.arguments(quick)) for experiment in experiments]
     return sorted(

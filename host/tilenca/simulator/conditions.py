@@ -11,6 +11,7 @@ from tilenca.simulator.rollout_library import SCHEDULES
 ScheduleKind = Literal["random", "clock", "listing"]
 FaultKind = Literal["dead", "stuck", "away"]
 Switches = NDArray[np.int32]
+MOST_LATENCY = 0.98  # a message arrives before its sender sends the next, with a period 1 % off
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,24 @@ class Conditions:
                 f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "
                 "message arrives before its sender sends the next"
             )
+
+
+def parse_latency(text: str) -> tuple[float, float]:
+    """Parses what messages take, in periods: `0.77` for all of them, or `0.1-0.9` from least to most.
+
+    Raises:
+        ValueError: it is not valid; the message says why.
+    """
+    least, dash, most = text.partition("-")
+    try:
+        latency = float(least), float(most if dash else least)
+    except ValueError:
+        raise ValueError(
+            f"'{text}' is neither a number of periods nor two of them, such as 0.1-0.9"
+        ) from None
+    if not 0 < latency[0] <= latency[1] <= MOST_LATENCY:
+        raise ValueError(f"'{text}': messages take more than 0 and at most {MOST_LATENCY} periods")
+    return latency
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from itertools import product
 from tilenca.base.errors import UsageError
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.shapes.sizes import parse_size
-from tilenca.simulator.conditions import Conditions
+from tilenca.simulator.conditions import Conditions, parse_latency
 from tilenca.simulator.rollout_library import SCHEDULES
 
 FAST, EMULATOR = "fast", "emulator"
@@ -25,6 +25,7 @@ MAX_VALUES = 1000  # of one axis
 MAX_CELLS = 100_000
 AS_DRAWN = "drawn"  # a size
 KINDS = ("drawn", "damaged", "varied", "unknown")  # of drawings
+LATENCY = "-".join(map(str, Conditions.latency))
 STEP_S = DEFAULT_PERIOD_MS / 1000  # at the pace of real tiles
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
@@ -78,6 +79,11 @@ AXES: dict[str, AxisKind] = {
     "delay": AxisKind("further delay of the cables, ms", {EMULATOR: 0.0}, 1000.0),
     "boot-spread": AxisKind(
         "switched on within so many seconds", _both(Conditions.boot * STEP_S, 1.0), 3600.0
+    ),
+    "latency": AxisKind(
+        "what a message takes, in periods: 0.5, or between 0.1-0.9",
+        {FAST: LATENCY},
+        read=parse_latency,
     ),
 }
 
@@ -197,7 +203,20 @@ def points(axes: Sequence[Axis], engine: str) -> list[Point]:
         raise UsageError(
             "--axis dead and --axis stuck: together they could leave no tile to ask; give one of them"
         )
+    _check_latency(axes)
     usual = {name: kind.default[engine] for name, kind in AXES.items() if engine in kind.default}
     return [
         usual | dict(zip(names, values, strict=True)) for values in product(*(axis.values for axis in axes))
     ]
+
+
+def _check_latency(axes: Sequence[Axis]) -> None:
+    """Refuses messages that take longer than the shortest period."""
+    values = {axis.name: axis.values for axis in axes}
+    longest = max(parse_latency(str(text))[1] for text in values.get("latency", (LATENCY,)))
+    drift = max(float(ppm) for ppm in values.get("ppm", (0.0,))) / 1e6
+    if longest >= 1 - drift:
+        raise UsageError(
+            f"--axis latency: messages of {longest:g} periods take longer than the shortest period with "
+            "--axis ppm; give less of one of them"
+        )

@@ -1,18 +1,25 @@
 """One drawing on emulated tiles, to its end: how a run is measured, for `evaluate` and for sweeps."""
 
 import math
+import random
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tilenca.base.errors import BuildError
 from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.model.file import Model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.settings import Settings
 from tilenca.shapes.file import Shape
 from tilenca.simulator.simulator import MIXED
 
+PLUGS = ("again", "new")  # how a tile is plugged in while the others run
+# The others have agreed by then; what was pulled is away for long enough that all have noticed.
+PLUG_BOOT_S, PULLED_S, AWAY_S = 0.2, 1.2, 0.8
+START_UP_S = 0.2  # of a tile without a bootloader, at most
 Look = Callable[[Emulation, list[Heard]], None]
 
 
@@ -41,13 +48,16 @@ class EmulatedRun:
 
     Attributes:
         right: share of the tiles with power that showed the right class at the end.
-        converged_at: update from which all were right to the end; infinite for none.
+        converged_at: step from which all were right to the end; infinite for none. A step is a period, and
+            the first one ends with the first update of the tile that was switched on last.
+        agreed_s: seconds from when the last tile was switched on until all were right to the end; the same.
         answer: the class that all showed at the end, negative where they differed.
         updates: that the tiles did in all.
     """
 
     right: float
     converged_at: float
+    agreed_s: float
     answer: int
     updates: int
 
@@ -75,16 +85,40 @@ def run_emulated(
 
     with emulation.array:
         emulation.run(on_slice)
-        at = emulation.agreed_at_update()
+        agreed_s, after_s = emulation.agreed_at_s(), emulation.agreed_after_update_s()
+        period_s = (emulation.period_ms or DEFAULT_PERIOD_MS) / 1000
         labels = list(image.model.labels)
         answers = set(emulation.answers())
         known = len(answers) == 1 and answers <= set(labels)
         return EmulatedRun(
             emulation.share_right(),
-            math.inf if at is None else max(at, 1),
+            math.inf if after_s is None else 1 + math.ceil(after_s / period_s),
+            math.inf if agreed_s is None else agreed_s,
             labels.index(answers.pop()) if known else MIXED,
             emulation.updates_done(),
         )
+
+
+def plugged(
+    settings: EmulationSettings, kind: str, tiles: int, steps: int, period_ms: int
+) -> EmulationSettings:
+    """A run in which one tile is plugged in while the others run. Times and steps then count from there.
+
+    Args:
+        settings: of the run; the seed decides which tile it is.
+        kind: "again": it ran with the others, and was pulled; "new": it was not there before.
+        tiles: of the drawing, two at least.
+        steps: periods after which the run is judged.
+        period_ms: of an update.
+    """
+    tile = random.Random(f"{settings.seed} plugged").randrange(tiles) + 1
+    away_s, back_s = (0.0, PULLED_S) if kind == "new" else (PULLED_S, PULLED_S + AWAY_S)
+    return replace(
+        settings,
+        seconds=back_s + START_UP_S + (steps + 1) * period_ms / 1000,
+        boot_spread_s=PLUG_BOOT_S,
+        faults=(*settings.faults, parse_fault(f"off@{tile}:{away_s:g}-{back_s:g}")),
+    )
 
 
 def _check_model(emulation: Emulation, image: Image) -> None:

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from tilenca.shapes.file import Shape
-from tilenca.sweep.axes import FAST, STEP_S, Point, text_of
+from tilenca.sweep.axes import AXES, FAST, STEP_S, Point, text_of
 
+LATER = ("latency",)  # axes that came later: rows that do not vary them keep their chance
 BLOCK_UPDATES = 1_000_000  # cell updates of a block of the fast simulator: less than a second
 FAST_UPDATES = 1.5e6  # cell updates a second, and emulated tile seconds a second: only to size tasks
 EMULATED_TILES = 60.0
@@ -66,7 +67,12 @@ class Row:
     @cached_property
     def key(self) -> str:
         """A digest of what decides the row's chance: the conditions and drawings, not the number of runs."""
-        conditions = {name: text_of(value) for name, value in self.point.items() if name != "model"}
+        usual = {name: AXES[name].default.get(self.engine) for name in LATER}
+        conditions = {
+            name: text_of(value)
+            for name, value in self.point.items()
+            if name != "model" and not (name in LATER and value == usual[name])
+        }
         about = [conditions, self.engine, self.model_id, self.steps]
         drawings = [(shape.label, shape.rows) for shape in self.subject.shapes]
         return hashlib.sha256(json.dumps([about, drawings], sort_keys=True).encode()).hexdigest()[:20]
