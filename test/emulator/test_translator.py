@@ -68,10 +68,32 @@ def draw_word(draw: random.Random) -> int:
             return word
 
 
+def draw_chain(draw: random.Random) -> list[int]:
+    """A number of two to four bytes is added, subtracted or compared, byte by byte."""
+    count = draw.randint(2, 4)
+    if draw.random() < 0.3:  # SUBI, SBCI
+        first = draw.randint(16, 26 - count)
+        constant = draw.getrandbits(32)
+        codes = [0x5000, 0x4000, 0x4000, 0x4000][:count]
+        values = [constant >> 8 * i & 0xFF for i in range(count)]
+        return [
+            code | (value << 4 & 0xF00) | (first + i - 16) << 4 | (value & 15)
+            for i, (code, value) in enumerate(zip(codes, values, strict=True))
+        ]
+    start, follow = draw.choice([(0x0C00, 0x1C00), (0x1800, 0x0800), (0x1400, 0x0400)])  # ADD, SUB, CP
+    first, other = draw.randint(0, 26 - count), draw.randint(0, 32 - count)
+    codes = [start, *[follow] * (count - 1)]
+    return [
+        code | ((other + i) << 5 & 0x200) | (first + i) << 4 | (other + i & 15)
+        for i, code in enumerate(codes)
+    ]
+
+
 def random_program(seed: int) -> str:
     """A loop of random instructions, called and interrupted, as an Intel HEX file."""
     draw = random.Random(seed)
-    body = [draw_word(draw) for _ in range(150)]
+    pieces = [draw_chain(draw) if draw.random() < 0.2 else [draw_word(draw)] for _ in range(120)]
+    body = [word for piece in pieces for word in piece]
     pointers = [
         0xE000 | (value << 4 & 0xF00) | (value & 15) | (reg - 16) << 4 for reg, value in POINTERS.items()
     ]

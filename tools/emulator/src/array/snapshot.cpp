@@ -8,7 +8,7 @@ namespace tilenca {
 namespace {
 
 constexpr uint32_t kMagic = 0x53434C54; // "TLCS"
-constexpr uint32_t kVersion = 5;        // one more whenever any state() changes
+constexpr uint32_t kVersion = 6;        // one more whenever any state() changes
 
 // FNV-1a.
 uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u) {

@@ -71,7 +71,32 @@ bool Counter::is_settled() const {
     return count_ <= top() && (!is_pwm() || compares_ == buffers_);
 }
 
+// Whether nothing but flags comes of counting up to the top and on from zero.
+bool Counter::only_sets_flags() const {
+    return mode_.wave == Wave::Fast && !blocked_ && is_settled() && !toggles(0) && !toggles(1) && !toggles(2);
+}
+
+// At most a period of those.
+void Counter::advance_plainly(uint64_t ticks) {
+    const unsigned last = top(), first = count_;
+    const auto passes = [=](unsigned value) {
+        return value <= last && (value >= first ? value - first : value + last + 1 - first) < ticks;
+    };
+    for (unsigned channel = 0; channel < channels_; channel++) {
+        flags |= static_cast<uint8_t>(passes(compares_[channel]) << channel << 1); // from kFlagCompareA on
+    }
+    if (passes(last)) {
+        flags |= kFlagOverflow | (mode_.top == Top::Capture ? kFlagCapture : 0);
+    }
+    const uint64_t count = first + ticks;
+    count_ = static_cast<uint16_t>(count > last ? count - last - 1 : count);
+    free_ticks_ = 0;
+}
+
 void Counter::advance_far(uint64_t ticks) {
+    if (only_sets_flags() && ticks <= period()) {
+        return advance_plainly(ticks);
+    }
     if (ticks == free_ticks_ && ticks != 0) { // as most events are: just there
         step(ticks);
         free_ticks_ = static_cast<uint32_t>(ticks_to_boundary());

@@ -73,6 +73,8 @@ class Counter {
     bool toggles(unsigned channel) const { return actions_[channel] == 1; }
     uint64_t period() const;
     bool is_settled() const;
+    bool only_sets_flags() const;
+    void advance_plainly(uint64_t ticks);
     void advance_far(uint64_t ticks);
     uint64_t step(uint64_t ticks);
     uint64_t ticks_to_boundary() const;

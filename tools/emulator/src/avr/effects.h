@@ -83,6 +83,28 @@ TILENCA_EFFECT uint32_t logical(uint32_t result, uint32_t& zero, uint32_t& nvh) 
     return result;
 }
 
+// Numbers of so many bits, as if they were added byte by byte with carry; likewise subtracted.
+template <unsigned bits>
+TILENCA_EFFECT uint32_t add_wide(uint32_t d, uint32_t s, uint32_t& carry, uint32_t& zero, uint32_t& nvh) {
+    constexpr unsigned highest = bits - 8;
+    const uint64_t sum = uint64_t{d} + s;
+    const auto result = static_cast<uint32_t>(sum & ((uint64_t{1} << bits) - 1));
+    nvh = pack(result >> highest, ((d ^ result) & (s ^ result)) >> highest, (d ^ s ^ result) >> highest);
+    carry = static_cast<uint32_t>(sum >> bits);
+    zero = result >> highest; // of the highest byte only
+    return result;
+}
+template <unsigned bits>
+TILENCA_EFFECT uint32_t subtract_wide(uint32_t d, uint32_t s, uint32_t& carry, uint32_t& zero,
+                                      uint32_t& nvh) {
+    constexpr unsigned highest = bits - 8;
+    const auto result = static_cast<uint32_t>((uint64_t{d} - s) & ((uint64_t{1} << bits) - 1));
+    nvh = pack(result >> highest, ((d ^ s) & (d ^ result)) >> highest, (d ^ s ^ result) >> highest);
+    carry = d < s;
+    zero = (result | result >> 8 | result >> 16 | result >> 24) & 0xFF;
+    return result;
+}
+
 // --- one operand ---
 
 TILENCA_EFFECT uint32_t complement(uint32_t d, uint32_t& carry, uint32_t& zero, uint32_t& nvh) {

@@ -150,13 +150,19 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
         reschedule();
         return;
     }
+    if (const unsigned offset = address - base_; offset < kNarrowEnd && (plain_ >> offset & 1) != 0) {
+        write_plainly(offset, value);
+        return;
+    }
     cycle++;
     sync(cycle);
     if (address == mask_register_) {
         byte(address) = value;
         watch_inputs(cycle);
+        note_plain();
     } else if (address < base_ + first_value) {
         write_control(address, value, cycle);
+        note_plain();
     } else {
         const unsigned offset = address - base_;
         if (is_wide() && (offset & 1) != 0) { // waits for the low byte, and nothing has changed yet
@@ -177,8 +183,28 @@ unsigned Timer::first_compare() const {
     return is_wide() ? kWideCompare : kNarrowCompare;
 }
 
-// Whether anything but a flag that nobody waits for can come of a compare register's new value: some programs
-// keep their variables there.
+// Some programs keep their variables in the registers of a timer that stands: then nothing else comes of a
+// write.
+void Timer::note_plain() {
+    plain_ = 0;
+    if (divisor_ == 0 && !is_wide() && !is_observed_) {
+        plain_ = 1 << kNarrowCount;
+        for (unsigned i = 0; i < channels(); i++) {
+            plain_ |= static_cast<uint8_t>(!compare_matters(i) << (kNarrowCompare + i));
+        }
+    }
+}
+
+void Timer::write_plainly(unsigned offset, uint8_t value) {
+    if (offset == kNarrowCount) {
+        counter_.set_count(value);
+    } else {
+        counter_.set_compare(offset - kNarrowCompare, value);
+        byte(static_cast<uint16_t>(base_ + offset)) = value;
+    }
+}
+
+// Whether anything but a flag that nobody waits for can come of a compare register's new value.
 bool Timer::compare_matters(unsigned offset) const {
     const unsigned channel = is_wide() ? offset / 2 : offset;
     const bool is_waited_for = ((byte(mask_register_) | told_flags_) & kFlagCompareA << channel) != 0;
@@ -268,6 +294,7 @@ void Timer::reset(uint64_t cycle) {
     told_flags_ = 0;
     synced_ = cycle;
     core_.schedule.cancel(slot_);
+    note_plain();
 }
 
 } // namespace tilenca::avr

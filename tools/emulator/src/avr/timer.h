@@ -63,6 +63,8 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     void write_control(uint16_t address, uint8_t value, uint64_t cycle);
     void write_value(unsigned offset, uint8_t value);
     unsigned first_compare() const;
+    void note_plain();
+    void write_plainly(unsigned offset, uint8_t value);
     bool compare_matters(unsigned offset) const;
     void set_compare(unsigned channel, uint16_t value);
     uint8_t read_value(unsigned offset);
@@ -92,6 +94,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     bool comparator_captures_ = false;
     uint64_t capture_due_ = kNever; // an edge that the noise canceller has not let pass yet
     uint8_t told_flags_ = 0;
+    uint8_t plain_ = 0; // a bit per register, from TCCRnA on: no more than its value comes of a write
     std::function<void(uint64_t)> on_flags_ = [](uint64_t) {};
 };
 

@@ -28,8 +28,9 @@ void Timer::update_requests() {
     }
 }
 
+// A flag that is set already counts as well: so nothing moves when an interrupt is taken.
 void Timer::reschedule() {
-    const auto wanted = static_cast<uint8_t>((byte(mask_register_) | told_flags_) & ~counter_.flags);
+    const auto wanted = static_cast<uint8_t>(byte(mask_register_) | told_flags_);
     uint64_t due = capture_due_;
     if (divisor_ != 0 && !clock_stands()) {
         uint64_t ticks = wanted == 0 ? 0 : counter_.ticks_to_flag(wanted);
@@ -60,7 +61,6 @@ void Timer::interrupt_taken(uint8_t vector) {
     const unsigned bit = place == 0 ? kCaptureBit : (place > channels() ? kOverflowBit : place);
     counter_.flags &= static_cast<uint8_t>(~(1u << bit));
     update_requests();
-    reschedule();
 }
 
 } // namespace tilenca::avr

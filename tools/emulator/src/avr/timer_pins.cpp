@@ -69,6 +69,7 @@ void Timer::look_for_observers() {
     for (unsigned i = 0; i < channels(); i++) {
         is_observed_ = is_observed_ || (driving_[i] && gpio_.is_observed(pins_[i]));
     }
+    note_plain();
 }
 
 void Timer::show_outputs(uint64_t cycle) {
@@ -144,6 +145,7 @@ void Timer::tell_of_flags(uint8_t mask, uint64_t cycle) {
     sync(cycle);
     update_requests(); // for a flag that falls due in this very cycle
     told_flags_ = mask;
+    note_plain();
     watch_inputs(cycle);
     reschedule();
 }

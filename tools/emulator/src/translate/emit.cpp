@@ -1,142 +1,138 @@
 #include "translate/emit.h"
 
-#include "translate/forms.h"
+#include "translate/chains.h"
 #include "translate/frame.h"
+#include "translate/regions.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kStackPointer = 32, kRegisters = 33; // the stack pointer is one more register
+std::string function_name(size_t region) {
+    return "blocks" + std::to_string(region);
+}
 
-// A block's function. Registers are variables: read when it is entered, written back wherever it is left.
+// All translated blocks by where they begin, and which function has them.
+struct Place {
+    size_t block, region;
+};
+using Places = std::map<uint32_t, Place>;
+
+// A function of one block, or of the blocks of a loop. Those jump to each other's labels.
 class Function {
   public:
-    Function(const avr::Program& program, const std::map<uint32_t, size_t>& numbers, const Block& block,
+    Function(const avr::Program& program, const Places& places, const std::vector<const Block*>& blocks,
              const uint8_t* special)
-        : program_(program), numbers_(numbers), block_(block), special_(special), begin_(block.words[0]) {}
+        : program_(program), places_(places), blocks_(blocks), special_(special),
+          region_(places.at(blocks[0]->words[0]).region) {}
 
     std::string text() {
-        for (const uint32_t word : block_.words) { // what it writes has to be known before it is left
-            const avr::Instruction in = program_.original(word);
-            note(filled(form_of(in, special_), in, ""), form_of(in, special_).kind, written_);
-            loops_ = loops_ || leads_to(in, word) == begin_;
+        look_through();
+        so_far_ = all_;
+        so_far_.forget();
+        for (const Block* block : blocks_) {
+            write_block(*block);
         }
-        const std::string own = std::to_string(numbers_.at(begin_));
-        write("void block" + own + "(STATE) {");
-        write("uint32_t a, w;");
         std::string body;
         std::swap(body, text_);
-        for (size_t i = 0; i < block_.words.size(); i++) {
-            i += emit(i);
-        }
-        if (!ended_) {
-            go(after_);
-        }
-        std::swap(body, text_);
-        for (unsigned reg = 0; reg <= kStackPointer; reg++) {
-            if (used_[reg]) {
-                write("uint32_t " + name(reg) + " = " + stored(reg) + ";");
+        write("void " + function_name(region_) + "(STATE) {\nuint32_t a, w;");
+        text_ += all_.declared();
+        if (blocks_.size() > 1) {
+            write("switch (at - PROGRAM) {");
+            for (const Block* block : blocks_) {
+                write("case " + std::to_string(block->words[0]) + ": goto " + label(block->words[0]) + ";");
             }
+            write("default: __builtin_unreachable();\n}");
         }
-        if (loops_) {
-            write("again:");
-        }
-        write("if (RARE(cycle + " + std::to_string(last_start_) + " >= LIMIT)) {" + (loops_ ? flush() : "") +
-              " return interpret_first<" + own + ">(PASSED); }");
-        text_ += body;
-        write("}\n");
-        return text_;
+        return text_ + body + "}\n\n";
     }
 
   private:
-    using Registers = std::array<bool, kRegisters>;
-
-    static std::string name(unsigned reg) { return reg == kStackPointer ? "sp" : "r" + std::to_string(reg); }
-    static std::string stored(unsigned reg) {
-        return reg == kStackPointer ? "DATA(0x5D) | DATA(0x5E) << 8" : "DATA(" + std::to_string(reg) + ")";
-    }
+    static std::string label(uint32_t word) { return "at" + std::to_string(word); }
     void write(const std::string& line) { text_ += line + "\n"; }
 
-    uint32_t leads_to(const avr::Instruction& in, uint32_t word) const {
-        const Kind kind = form_of(in, special_).kind;
-        return kind == Kind::Jump || kind == Kind::Branch ? word + static_cast<uint32_t>(in.jump) : ~0u;
-    }
-
-    // Registers in a piece of text: "r24", "sp"; a blank and "=" behind one tells that it is written.
-    void note(const std::string& piece, Kind kind, Registers& set) {
-        for (size_t i = 0; i < piece.size(); i++) {
-            const bool starts = i == 0 || !is_name(piece[i - 1]);
-            if (!starts) {
-                continue;
-            }
-            size_t end = i;
-            unsigned reg = kStackPointer + 1;
-            if (piece[i] == 'r' && i + 1 < piece.size() && piece[i + 1] >= '0' && piece[i + 1] <= '9') {
-                for (reg = 0, end = i + 1; end < piece.size() && is_name(piece[end]); end++) {
-                    reg = reg * 10 + static_cast<unsigned>(piece[end] - '0');
+    // What it uses and writes, and which registers hold one number together, has to be known before.
+    void look_through() {
+        std::vector<unsigned> pairs;
+        for (const Block* block : blocks_) {
+            for (size_t i = 0; i < block->words.size(); i++) {
+                const avr::Instruction in = program_.original(block->words[i]);
+                const Form form = form_of(in, special_);
+                const std::string piece = filled(form, in, "");
+                all_.note(piece, form.kind);
+                if (const Chain chain = chain_at(*block, i); chain.count != 0) {
+                    all_.join(chain.first, chain.count);
                 }
-            } else if (piece.compare(i, 2, "sp") == 0 && (i + 2 == piece.size() || !is_name(piece[i + 2]))) {
-                reg = kStackPointer;
-                end = i + 2;
-            }
-            if (reg <= kStackPointer) {
-                used_[reg] = true;
-                set[reg] = set[reg] || piece.compare(end, 3, " = ") == 0;
-            }
-        }
-        if (kind == Kind::Call || kind == Kind::DynamicCall) {
-            used_[kStackPointer] = set[kStackPointer] = true;
-        }
-    }
-    static bool is_name(char c) {
-        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    }
-
-    // Once round the loop, anything may have been written.
-    bool is_dirty(unsigned reg) const { return loops_ ? written_[reg] : dirty_[reg]; }
-
-    std::string flush() const {
-        std::string all;
-        for (unsigned reg = 0; reg < kStackPointer; reg++) {
-            if (is_dirty(reg)) {
-                all += " " + stored(reg) + " = static_cast<uint8_t>(" + name(reg) + ");";
+                for (const unsigned low :
+                     {0u, 24u, 26u, 28u, 30u}) { // a product, and what is added to a word
+                    const std::string pair = "(r" + std::to_string(low) + ", r" + std::to_string(low + 1);
+                    if (piece.find(pair) != std::string::npos) {
+                        pairs.push_back(low);
+                    }
+                }
+                const bool jumps = form.kind == Kind::Jump || form.kind == Kind::Branch;
+                is_loop_ = is_loop_ || (jumps && leads_within(target(in, block->words[i])));
             }
         }
-        if (is_dirty(kStackPointer)) {
-            all += " DATA(0x5D) = static_cast<uint8_t>(sp); DATA(0x5E) = static_cast<uint8_t>(sp >> 8);";
+        for (const unsigned low : pairs) {
+            all_.join(low, 2);
         }
-        return all;
+        is_loop_ = is_loop_ || blocks_.size() > 1;
     }
 
-    // Leaves the block before an instruction, which the interpreter executes.
+    static uint32_t target(const avr::Instruction& in, uint32_t word) {
+        return word + static_cast<uint32_t>(in.jump);
+    }
+    bool leads_within(uint32_t word) const {
+        const auto known = places_.find(word);
+        return known != places_.end() && known->second.region == region_;
+    }
+
+    Chain chain_at(const Block& block, size_t index) const {
+        std::vector<avr::Instruction> instructions;
+        for (size_t i = index; i < block.words.size() && block.words[i] == block.words[index] + (i - index);
+             i++) {
+            instructions.push_back(program_.original(block.words[i]));
+        }
+        return chain_of(instructions);
+    }
+
+    // Once round a loop, anything may have been written.
+    std::string written_back() const { return (is_loop_ ? all_ : so_far_).written_back(); }
+    static std::string moved_to(uint32_t word) { return " at = PROGRAM + " + std::to_string(word) + "; "; }
+
+    std::string interpret_first(const Registers& written) const {
+        return "{" + written.written_back() + moved_to(begin_) + "return interpret_first<" +
+               std::to_string(places_.at(begin_).block) + ">(PASSED); }";
+    }
+
+    // Leaves before an instruction, which the interpreter executes.
     std::string interpret(uint32_t word, bool always = false) const {
         if (word == begin_) {
-            return "{" + flush() + " return interpret_first<" + std::to_string(numbers_.at(begin_)) +
-                   ">(PASSED); }";
+            return interpret_first(is_loop_ ? all_ : so_far_);
         }
-        return "{" + flush() + " at += " + std::to_string(word - begin_) + "; return " +
-               (always ? "at->run" : "interpret") + "(PASSED); }";
+        return "{" + written_back() + moved_to(word) + "return " + (always ? "at->run" : "interpret") +
+               "(PASSED); }";
     }
 
     void go(uint32_t to) {
-        const auto known = numbers_.find(to);
-        if (loops_ && to == begin_) {
-            write("goto again;");
+        const auto known = places_.find(to);
+        if (leads_within(to)) {
+            write("goto " + label(to) + ";");
             return;
         }
-        write(flush() + " at += " + std::to_string(static_cast<int64_t>(to) - begin_) + ";");
-        write(known == numbers_.end() ? "return next(PASSED);"
-                                      : "return block" + std::to_string(known->second) + "(PASSED);");
+        write(written_back() + moved_to(to));
+        write(known == places_.end() ? "return next(PASSED);"
+                                     : "return " + function_name(known->second.region) + "(PASSED);");
     }
 
     void go_to_computed() {
-        write(flush() + " at = PROGRAM + (w < " + std::to_string(avr::kFlashWords) +
-              " ? w : " + std::to_string(avr::kFlashWords) + "); return next(PASSED);");
+        const std::string words = std::to_string(avr::kFlashWords);
+        write(written_back() + " at = PROGRAM + (w < " + words + " ? w : " + words +
+              "); return next(PASSED);");
     }
 
     void push_return(uint32_t word, uint32_t after) {
@@ -146,14 +142,40 @@ class Function {
               "; DATA(sp - 2) = " + std::to_string(after >> 16) + "; sp = (sp - 3) & 0xFFFF;");
     }
 
+    void write_block(const Block& block) {
+        begin_ = block.words[0];
+        offset_ = last_start_ = 0;
+        ended_ = reads_flash_ = false;
+        std::string body;
+        std::swap(body, text_);
+        for (size_t i = 0; i < block.words.size(); i++) {
+            i += emit(block, i);
+        }
+        if (!ended_) {
+            go(after_);
+        }
+        std::swap(body, text_);
+        if (is_loop_) {
+            write(label(begin_) + ":");
+        }
+        write("if (RARE(cycle + " + std::to_string(last_start_) + " >= LIMIT" +
+              (reads_flash_ ? " || FLASH_LIMIT < 0x10000" : "") + ")) " +
+              interpret_first(is_loop_ ? all_ : nothing_));
+        text_ += body;
+    }
+
     void starts(unsigned offset) { last_start_ = std::max(last_start_, offset); }
 
-    // Emits the instruction at an index, and the next one as well if it may be skipped; returns how many
-    // more.
-    size_t emit(size_t index) {
-        const uint32_t word = block_.words[index];
+    // Emits the instruction at an index, and those that it takes along; returns how many more.
+    size_t emit(const Block& block, size_t index) {
+        const uint32_t word = block.words[index];
         const avr::Instruction in = program_.original(word);
         const Form form = form_of(in, special_);
+        if (const Chain chain = chain_at(block, index);
+            chain.count != 0 && all_.are_joined(chain.first, chain.count)) {
+            emit_chain(chain, block, index);
+            return chain.count - 1;
+        }
         if (form.kind != Kind::Skip) {
             emit_one(word, in, form, offset_);
             offset_ += form.cycles;
@@ -165,7 +187,7 @@ class Function {
               "; } else {");
         const uint32_t over = word + 1;
         unsigned longest = jump;
-        if (index + 1 < block_.words.size()) {
+        if (index + 1 < block.words.size()) {
             const avr::Instruction skipped = program_.original(over);
             const Form its = form_of(skipped, special_);
             emit_one(over, skipped, its, offset_ + 1);
@@ -177,7 +199,19 @@ class Function {
         ended_ = false;
         offset_ += longest;
         after_ = word + jump;
-        return index + 1 < block_.words.size() ? 1 : 0;
+        return index + 1 < block.words.size() ? 1 : 0;
+    }
+
+    void emit_chain(const Chain& chain, const Block& block, size_t index) {
+        write(chain.text() + " cycle += " + std::to_string(chain.count) + ";");
+        for (size_t i = index; i < index + chain.count; i++) {
+            const avr::Instruction in = program_.original(block.words[i]);
+            const Form form = form_of(in, special_);
+            so_far_.note(filled(form, in, ""), form.kind);
+        }
+        offset_ += chain.count;
+        starts(offset_ - 1);
+        after_ = block.words[index] + chain.count;
     }
 
     void emit_one(uint32_t word, const avr::Instruction& in, const Form& form, unsigned offset) {
@@ -185,35 +219,36 @@ class Function {
         after_ = word_after(program_, word);
         const std::string took = "cycle += " + std::to_string(form.cycles) + ";";
         const std::string piece = filled(form, in, interpret(word));
+        reads_flash_ = reads_flash_ || form.reads_flash;
         switch (form.kind) {
         case Kind::Plain:
             write(piece + " " + took);
-            note(filled(form, in, ""), form.kind, dirty_);
+            so_far_.note(filled(form, in, ""), form.kind);
             return;
         case Kind::Branch:
             write(took + " if (" + piece + ") { cycle += 1;");
-            go(word + static_cast<uint32_t>(in.jump));
+            go(target(in, word));
             write("}");
             return;
         case Kind::Jump:
             write(took);
-            go(word + static_cast<uint32_t>(in.jump));
+            go(target(in, word));
             break;
         case Kind::Call:
             push_return(word, after_);
-            dirty_[kStackPointer] = true;
+            so_far_.note("", form.kind);
             write(took);
-            go(word + static_cast<uint32_t>(in.jump));
+            go(target(in, word));
             break;
         case Kind::DynamicCall:
             push_return(word, after_);
-            dirty_[kStackPointer] = true;
+            so_far_.note("", form.kind);
             write(piece + " " + took);
             go_to_computed();
             break;
         case Kind::Dynamic:
             write(piece + " " + took);
-            note(filled(form, in, ""), form.kind, dirty_);
+            so_far_.note(filled(form, in, ""), form.kind);
             go_to_computed();
             break;
         default:
@@ -223,33 +258,43 @@ class Function {
     }
 
     const avr::Program& program_;
-    const std::map<uint32_t, size_t>& numbers_; // of all blocks, by their begin
-    const Block& block_;
+    const Places& places_;
+    const std::vector<const Block*>& blocks_;
     const uint8_t* special_;
-    const uint32_t begin_;
+    const size_t region_;
     std::string text_;
-    Registers used_{}, written_{}, dirty_{};
-    bool loops_ = false, ended_ = false;
+    Registers all_, so_far_; // of the whole function; of what was emitted, where that is one block
+    const Registers nothing_;
+    bool is_loop_ = false; // its blocks are jumped to
+    uint32_t begin_ = 0;   // of the block
+    bool ended_ = false, reads_flash_ = false;
     uint32_t after_ = 0;      // the word that follows what was emitted
-    unsigned offset_ = 0;     // cycles since the begin, at most
-    unsigned last_start_ = 0; // of the last instruction, at most
+    unsigned offset_ = 0;     // cycles since the block's begin, at most
+    unsigned last_start_ = 0; // of its last instruction, at most
 };
 
 } // namespace
 
 std::string source_of(const avr::Program& program, const std::vector<Block>& blocks, const uint8_t* special) {
-    std::map<uint32_t, size_t> numbers;
-    for (const Block& block : blocks) {
-        numbers.emplace(block.words[0], numbers.size());
-    }
+    const std::vector<std::vector<size_t>> regions = regions_of(program, blocks, special);
+    Places places;
+    std::vector<std::string> functions(blocks.size());
     std::string text = head_of(blocks.size());
-    for (size_t i = 0; i < blocks.size(); i++) {
-        text += "void block" + std::to_string(i) + "(STATE);\n";
+    for (size_t i = 0; i < regions.size(); i++) {
+        text += "void " + function_name(i) + "(STATE);\n";
+        for (const size_t block : regions[i]) {
+            places[blocks[block].words[0]] = {block, i};
+            functions[block] = function_name(i);
+        }
     }
-    for (const Block& block : blocks) {
-        text += Function(program, numbers, block, special).text();
+    for (const std::vector<size_t>& region : regions) {
+        std::vector<const Block*> its;
+        for (const size_t block : region) {
+            its.push_back(&blocks[block]);
+        }
+        text += Function(program, places, its, special).text();
     }
-    return text + tail_of(program, blocks);
+    return text + tail_of(program, blocks, functions);
 }
 
 } // namespace tilenca::translate

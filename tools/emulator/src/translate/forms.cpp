@@ -13,18 +13,16 @@ namespace {
 using namespace avr::ops;
 
 #define TILENCA_FLAGS "carry, zero, nvh"
-#define TILENCA_WORD "w = %D << 8 | %d; "
-#define TILENCA_X "r27 << 8 | r26"
-#define TILENCA_Y "r29 << 8 | r28"
-#define TILENCA_Z "r31 << 8 | r30"
+#define TILENCA_WORD "w = word(%d, %D); "
+#define TILENCA_X "word(r26, r27)"
+#define TILENCA_Y "word(r28, r29)"
+#define TILENCA_Z "word(r30, r31)"
 #define TILENCA_KEEP_PRODUCT(left, right, shift)                                                             \
-    "w = multiply(as_" left "(%d), as_" right "(%r), " shift ", carry, zero); r0 = w & 0xFF; r1 = w >> 8;"
+    "w = multiply(as_" left "(%d), as_" right "(%r), " shift ", carry, zero); put(r0, r1, w);"
 #define TILENCA_AT(pointer) "a = " pointer "; %s "
-#define TILENCA_AT_DISPLACED(pointer) "a = ((" pointer ") + %k) & 0xFFFF; %s "
-#define TILENCA_THEN_UP(pointer, low, high)                                                                  \
-    "a = " pointer "; %s " low " = (a + 1) & 0xFF; " high " = (a + 1) >> 8 & 0xFF; "
-#define TILENCA_DOWN_THEN(pointer, low, high)                                                                \
-    "a = ((" pointer ") - 1) & 0xFFFF; %s " low " = a & 0xFF; " high " = a >> 8; "
+#define TILENCA_AT_DISPLACED(pointer) "a = (" pointer " + %k) & 0xFFFF; %s "
+#define TILENCA_THEN_UP(pointer, low, high) "a = " pointer "; %s put(" low ", " high ", (a + 1) & 0xFFFF); "
+#define TILENCA_DOWN_THEN(pointer, low, high) "a = (" pointer " - 1) & 0xFFFF; %s put(" low ", " high ", a); "
 #define TILENCA_LOAD "%d = DATA(a);"
 #define TILENCA_FIND_RETURN "a = sp + 1; %s a = sp + 3; %s "
 #define TILENCA_POP_RETURN                                                                                   \
@@ -56,15 +54,11 @@ const std::unordered_map<avr::Handler, Form>& forms() {
         {ror, {Kind::Plain, "%d = rotate_right(%d, " TILENCA_FLAGS ");", 1}},
         {asr, {Kind::Plain, "%d = halve(%d, " TILENCA_FLAGS ");", 1}},
         {avr::ops::swap, {Kind::Plain, "%d = swap(%d);", 1}},
-        {adiw,
-         {Kind::Plain, TILENCA_WORD "w = add_word(w, %c, " TILENCA_FLAGS "); %d = w & 0xFF; %D = w >> 8;",
-          2}},
-        {sbiw,
-         {Kind::Plain,
-          TILENCA_WORD "w = subtract_word(w, %c, " TILENCA_FLAGS "); %d = w & 0xFF; %D = w >> 8;", 2}},
+        {adiw, {Kind::Plain, TILENCA_WORD "w = add_word(w, %c, " TILENCA_FLAGS "); put(%d, %D, w);", 2}},
+        {sbiw, {Kind::Plain, TILENCA_WORD "w = subtract_word(w, %c, " TILENCA_FLAGS "); put(%d, %D, w);", 2}},
         {ldi, {Kind::Plain, "%d = %c;", 1}},
         {mov, {Kind::Plain, "%d = %r;", 1}},
-        {movw, {Kind::Plain, "w = %r; a = %R; %d = w; %D = a;", 1}},
+        {movw, {Kind::Plain, "put(%d, %D, word(%r, %R));", 1}},
         {mul, {Kind::Plain, TILENCA_KEEP_PRODUCT("unsigned", "unsigned", "0"), 2}},
         {muls, {Kind::Plain, TILENCA_KEEP_PRODUCT("signed", "signed", "0"), 2}},
         {mulsu, {Kind::Plain, TILENCA_KEEP_PRODUCT("signed", "unsigned", "0"), 2}},
@@ -103,14 +97,13 @@ const std::unordered_map<avr::Handler, Form>& forms() {
         {out, {Kind::Plain, "DATA(%k) = static_cast<uint8_t>(%d);", 1}},
         {sbi, {Kind::Plain, "DATA(%k) |= %c;", 2}},
         {cbi, {Kind::Plain, "DATA(%k) &= %m;", 2}},
-        {lpm, {Kind::Plain, "a = " TILENCA_Z "; %l %d = FLASH[a];", 3}},
+        {lpm, {Kind::Plain, "a = " TILENCA_Z "; %d = FLASH[a];", 3, true}},
         {lpm_plus,
-         {Kind::Plain,
-          "a = " TILENCA_Z "; %l r30 = (a + 1) & 0xFF; r31 = (a + 1) >> 8 & 0xFF; %d = FLASH[a];", 3}},
+         {Kind::Plain, "a = " TILENCA_Z "; put(r30, r31, (a + 1) & 0xFFFF); %d = FLASH[a];", 3, true}},
         {elpm, {Kind::Plain, "a = (DATA(0x5B) & 3u) << 16 | " TILENCA_Z "; %l %d = FLASH[a];", 3}},
         {elpm_plus,
          {Kind::Plain,
-          "a = (DATA(0x5B) & 3u) << 16 | " TILENCA_Z "; %l r30 = (a + 1) & 0xFF; r31 = (a + 1) >> 8 & 0xFF; "
+          "a = (DATA(0x5B) & 3u) << 16 | " TILENCA_Z "; %l put(r30, r31, (a + 1) & 0xFFFF); "
           "DATA(0x5B) = static_cast<uint8_t>((a + 1) >> 16 & 3); %d = FLASH[a];",
           3}},
 

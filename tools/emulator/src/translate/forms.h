@@ -28,7 +28,8 @@ enum class Kind : uint8_t {
 struct Form {
     Kind kind = Kind::Interpreted;
     const char* text = "";
-    uint8_t cycles = 1; // a skip or branch that is not taken
+    uint8_t cycles = 1;       // a skip or branch that is not taken
+    bool reads_flash = false; // the lowest 64 KiB, which must be readable
 };
 
 // `special`: what I/O addresses the interpreter must see, as in avr::Cpu.

@@ -10,7 +10,7 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 3; // one more with every change of what is emitted
+constexpr unsigned kTextVersion = 4; // one more with every change of what is emitted
 
 // What comes after the places of the core's members and before the functions.
 constexpr const char* kPrelude = R"text(
@@ -28,6 +28,8 @@ struct Instruction {
 #define PASSED cpu, at, cycle, carry, zero, nvh
 #define MEMBER(type, place) (*reinterpret_cast<type*>(reinterpret_cast<char*>(cpu) + (place)))
 #define DATA(address) (reinterpret_cast<uint8_t*>(cpu)[address])
+// Byte for byte: the host would have to wait for bytes that were stored just before, one by one.
+#define STORED(address) uint32_t{reinterpret_cast<volatile uint8_t*>(cpu)[address]}
 #define LIMIT MEMBER(uint64_t, AT_LIMIT)
 #define HELD_UNTIL MEMBER(uint64_t, AT_HELD_UNTIL)
 #define REQUESTS MEMBER(const uint64_t, AT_REQUESTS)
@@ -43,6 +45,32 @@ struct Instruction {
 #define RARE(condition) __builtin_expect(condition, 0)
 
 namespace {
+
+// A register that is a byte of a longer number of so many bytes.
+template <unsigned shift, unsigned bytes>
+struct Byte {
+    uint32_t& whole;
+    operator uint32_t() const { return whole >> shift & 0xFF; }
+    const Byte& operator=(uint32_t value) const {
+        whole = (whole & ~(0xFFu << shift)) | value << shift;
+        return *this;
+    }
+};
+TILENCA_EFFECT uint32_t word(uint32_t low, uint32_t high) {
+    return high << 8 | low;
+}
+template <unsigned bytes>
+TILENCA_EFFECT uint32_t word(const Byte<0, bytes>& low, const Byte<8, bytes>&) {
+    return low.whole & 0xFFFF;
+}
+template <class Low, class High>
+TILENCA_EFFECT void put(Low& low, High& high, uint32_t word) {
+    low = word & 0xFF;
+    high = word >> 8;
+}
+TILENCA_EFFECT void put(const Byte<0, 2>& low, const Byte<8, 2>&, uint32_t word) {
+    low.whole = word;
+}
 
 Handler handlers[COUNT], leave;
 
@@ -103,12 +131,13 @@ std::string head_of(size_t blocks) {
            places() + define("COUNT", blocks) + "#define LAYOUT \"" + layout() + "\"\n" + kPrelude;
 }
 
-std::string tail_of(const avr::Program& program, const std::vector<Block>& blocks) {
+std::string tail_of(const avr::Program& program, const std::vector<Block>& blocks,
+                    const std::vector<std::string>& names) {
     std::string begins, functions, words, code;
     size_t count = 0;
     for (size_t i = 0; i < blocks.size(); i++) {
         begins += std::to_string(blocks[i].words[0]) + ",";
-        functions += "block" + std::to_string(i) + ",";
+        functions += names[i] + ",";
         for (const uint32_t word : blocks[i].words) {
             for (uint32_t one = word; one < word_after(program, word); one++, count++) {
                 words += std::to_string(one) + ",";
