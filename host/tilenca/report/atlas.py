@@ -127,16 +127,17 @@ def heat_maps(rows: Sequence[Row]) -> list[HeatMap]:
         rows: of two or three axes.
     """
     found: dict[str, dict[str, dict[str, Row]]] = {}
-    names: tuple[str, ...] = ()
+    names: list[str] = []
     for row in rows:
-        names = tuple(row.place)
+        names = list(row.place)
         right, down, *others = row.place.values()
         title = ", ".join(f"{name} {value}" for name, value in zip(names[2:], others, strict=True))
         found.setdefault(title, {}).setdefault(down, {})[right] = row
     return [
         HeatMap(
             title,
-            *names[:2],
+            names[0],
+            names[1],
             tuple(next(iter(of.values()))),
             tuple((down, tuple(mine.values())) for down, mine in of.items()),
         )
