@@ -47,9 +47,9 @@ def emulation(elf: Path, seconds: float) -> list[str]:
     frames = {name: sum(tile["frames"][name] for tile in tiles) for name in tiles[0]["frames"]}
     ratio = seconds / wall_s
     note(
-        exact(f"firmware: an {SHAPE}, awake", awake / updates, "cycles an update"),
-        exact(f"firmware: an {SHAPE}, frames lost", frames["lost"], "frames"),
-        exact(f"firmware: an {SHAPE}, frames damaged", frames["corrupt"], "frames"),
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, awake", awake / updates, "cycles an update"),
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, frames lost", frames["lost"], "frames"),
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, frames damaged", frames["corrupt"], "frames"),
     )
     return [
         f"{'cycles awake/update':<22} {awake / updates:>8,.0f}, all told: network, links, display, telemetry",
