@@ -104,8 +104,9 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
-bench: setup-train ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md
+bench: setup-train ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md, beside the last run
 	@$(PIO) run -s -e $(ENV)
+	@rm -f build/bench/figures.jsonl
 	@$(TOOL) bench.overview $(ELF)
 	@$(TOOL) bench.links $(ELF) --write docs/BENCHMARKS.md
 	@$(TOOL) bench.currents --write docs/HARDWARE.md
@@ -116,6 +117,7 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 	@$(TOOL) bench.web --write docs/BENCHMARKS.md
 	@$(TOOL) bench.sweep --write docs/SWEEPS.md
+	@$(TOOL) bench.history
 
 sweep: setup-train ## measure dead tiles and lost messages at three sizes, into docs/SWEEPS.md
 	@$(TILENCA) sweep --axis loss=0:0.6:0.1 --axis dead=0,0.02,0.05,0.1,0.2 --axis size=drawn,7x6,12x10 --runs 100 \
@@ -133,11 +135,11 @@ report: setup-train ## measure every claim again (some fifteen minutes of two co
 	@$(TOOL) docs.claims
 
 TIME ?= 600
-soak: setup-test ## let twenty emulated tiles go through everything that can happen, for TIME=600 seconds of theirs
+soak: setup-test ## let twenty emulated tiles go through everything that can happen, for TIME=600 seconds of theirs; WRITE=FILE
 	@$(PIO) run -s -e $(ENV)
-	@$(TOOL) bench.ordeal --seconds $(TIME)
+	@$(TOOL) bench.ordeal --seconds $(TIME) $(if $(WRITE),--write $(WRITE))
 
-fuzz: setup-fuzz ## fuzz what parses in the firmware, for TIME=600 seconds; needs clang
+fuzz: setup-fuzz ## fuzz what parses in firmware and emulator, for TIME=600 seconds; needs clang
 	@$(TOOL) fuzz --seconds $(TIME)
 
 wheel: setup-test ## build the source archive and the wheel into dist/, with the firmware of the shipped digits

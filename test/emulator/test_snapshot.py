@@ -1,6 +1,8 @@
 """Saving whole arrays, going back, and the same future again."""
 
+import math
 import random
+import struct
 from pathlib import Path
 
 import pytest
@@ -110,3 +112,58 @@ def test_damaged_snapshots_are_refused_in_one_line(avr: Compile, tmp_path: Path)
     array.restore(good)
     with pytest.raises(UsageError, match="another image"):
         Array(avr("int main(void) { for (;;) { } }")).restore(good)
+
+
+def forged(snapshot: bytes, place: int, content: bytes) -> bytes:
+    """A snapshot with other bytes at a place, and the checksum of that (FNV-1a)."""
+    body = snapshot[:place] + content + snapshot[place + len(content) : -4]
+    checksum = 2166136261
+    for byte in body:
+        checksum = (checksum ^ byte) * 16777619 % 2**32
+    return body + struct.pack("<I", checksum)
+
+
+# Magic, version, image and the number of tiles come first.
+TILES, WIRES, FIRST_WIRE, WIRE_BYTES = 12, 16, 20, 16
+
+
+@pytest.mark.parametrize(
+    ("place", "content", "reason"),
+    [
+        (TILES, struct.pack("<I", 0), "more tiles or cables than can be, or none"),
+        (TILES, struct.pack("<I", 4096), "more tiles or cables than can be"),
+        (WIRES, struct.pack("<I", 13), "more tiles or cables than can be"),
+        (FIRST_WIRE, struct.pack("<I", 7), "a cable leads nowhere"),
+        (FIRST_WIRE + 8, struct.pack("<I", 0), "one that leads back"),
+        (FIRST_WIRE + 12, struct.pack("<I", 2), "one direction only"),
+        (-1, struct.pack("<d", math.nan), "a number that no measure takes"),
+        (-1, struct.pack("<d", 1e300), "a number that no measure takes"),
+        (-1, struct.pack("<d", 100.0), "its time is none"),
+        (-1, struct.pack("<d", 256e12), "its time is none"),
+    ],
+)
+def test_what_no_array_saves_is_refused_although_its_checksum_is_right(
+    place: int, content: bytes, reason: str, avr: Compile
+) -> None:
+    array = build(avr(BUSY))
+    array.run(0.005)
+    good = array.save()
+    assert forged(good, 0, good[:4]) == good
+    (wires,) = struct.unpack_from("<I", good, WIRES)
+    time_at = FIRST_WIRE + wires * WIRE_BYTES
+    with pytest.raises(UsageError, match=reason):
+        array.restore(forged(good, time_at if place < 0 else place, content))
+    array.restore(good)
+    assert array.save() == good
+
+
+def test_a_tile_that_was_added_late_is_saved_before_it_has_run(avr: Compile) -> None:
+    array = build(avr(BUSY))
+    array.run(0.02)
+    array.add_tile()
+    snapshot = array.save()
+    array.run(0.01)
+    future = everything(array)
+    array.restore(snapshot)
+    array.run(0.01)
+    assert everything(array) == future

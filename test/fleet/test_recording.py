@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from support.strategies import damaged
 from tilenca.base.errors import UsageError
 from tilenca.fleet.recording import Recorder, format_event, parse_event, read_recording, recorded_shapes
 from tilenca.fleet.state import Event, PortNews
@@ -84,3 +85,25 @@ def test_the_shapes_of_emulated_runs_are_known(tmp_path: Path) -> None:
     path.write_text("\n".join(lines), encoding="ascii")
     assert recorded_shapes(path) == ["4", "1"]
     assert recorded_shapes(tmp_path / "none") == []
+
+
+GOOD = format_event(PortNews(1.0, "p", is_open=True)) + format_event(Heard(2.5, "p", b"$ASK*59\r\n", None))
+
+
+@given(damaged(GOOD.encode()))
+def test_a_file_of_any_bytes_is_read_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "record.jsonl"
+    path.write_bytes(content)
+    assert all(isinstance(name, str) for name in recorded_shapes(path))
+    refusal = ""
+    try:
+        found = list(read_recording(path))
+    except UsageError as error:
+        refusal = str(error)
+    else:
+        assert all(parse_event(format_event(event)) == event for event in found)
+    assert refusal == "" or refusal.startswith(str(path))
+    assert "\n" not in refusal
+    assert path.read_bytes() == content

@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from support.strategies import damaged
 from tilenca.base.errors import UsageError
 from tilenca.fleet.tiles_file import HEAD, Place, format_tiles, read_tiles, write_tiles
 
-names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1).map(lambda text: f"port:{text}")
+names = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1).map(
+    lambda text: f"port:{text}"
+)
 fleets = st.lists(
     st.tuples(st.integers(1, 255), names, st.tuples(st.integers(-9, 99), st.integers(-9, 99))),
     unique_by=(lambda tile: tile[0], lambda tile: tile[1], lambda tile: tile[2]),
@@ -31,6 +34,15 @@ def test_a_file_is_read_as_it_was_written_in_reading_order(tmp_path: Path) -> No
     assert [place.tile for place in read_tiles(path)] == [9, 3, 7]
     assert set(read_tiles(path)) == set(places)
     assert list(tmp_path.iterdir()) == [path]
+
+
+@given(fleets)
+def test_any_fleet_is_read_back_as_it_was_written(
+    tmp_path_factory: pytest.TempPathFactory, places: list[Place]
+) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "tiles.toml"
+    write_tiles(path, places)
+    assert set(read_tiles(path)) == set(places)
 
 
 GOOD = '[[tile]]\nid = 1\nrow = 0\ncol = 0\nboard = "serial:A"\n'
@@ -67,3 +79,27 @@ def test_a_file_that_cannot_be_used_says_so(tmp_path: Path) -> None:
         read_tiles(tmp_path / "noise")
     with pytest.raises(UsageError, match="--tiles"):
         write_tiles(tmp_path / "none" / "tiles.toml", [])
+
+
+@given(damaged(GOOD.encode()))
+def test_any_bytes_are_read_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "tiles.toml"
+    path.write_bytes(content)
+    refusal = ""
+    try:
+        assert all(isinstance(place, Place) for place in read_tiles(path))
+    except UsageError as error:
+        refusal = str(error)
+    assert refusal == "" or refusal.startswith(str(path))
+    assert "\n" not in refusal
+    assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize("value", ["9" * 5000, "[" * 2000])
+def test_a_number_or_a_list_without_end_is_refused(value: str, tmp_path: Path) -> None:
+    path = tmp_path / "tiles.toml"
+    path.write_text(f"tile = {value}\n")
+    with pytest.raises(UsageError, match="too"):
+        read_tiles(path)

@@ -9,9 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from support.refusal import refusal
+from support.strategies import damaged
 from tilenca.base import paths
+from tilenca.base.errors import UsageError
 from tilenca.model.file import Dimensions, load_model
 from tilenca.training.recipes import RECIPES
 
@@ -94,3 +98,25 @@ def test_cut_or_changed_weights_are_refused(model: Path, damage: Callable[[bytes
 def test_the_default_widths_are_those_of_the_shipped_digits() -> None:
     assert Dimensions() == load_model(paths.DEFAULT_MODEL).dimensions
     assert RECIPES["full"].hidden == Dimensions().hidden1
+
+
+FILES = {name: (paths.DEFAULT_MODEL / name).read_bytes() for name in ("model.json", "weights.npz")}
+
+
+@settings(max_examples=60)
+@given(st.sampled_from(sorted(FILES)).flatmap(lambda name: damaged(FILES[name]).map(lambda to: {name: to})))
+def test_any_bytes_are_the_model_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, changed: dict[str, bytes]
+) -> None:
+    folder = tmp_path_factory.mktemp("fuzz")
+    for name, content in (FILES | changed).items():
+        (folder / name).write_bytes(content)
+    said = ""
+    try:
+        found = load_model(folder)
+    except UsageError as error:
+        said = str(error)
+    else:
+        assert found.model_id == load_model(paths.DEFAULT_MODEL).model_id
+    assert said == "" or said.startswith(str(folder))
+    assert "\n" not in said

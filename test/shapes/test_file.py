@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from support.strategies import damaged
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.shapes.cells import connected
@@ -143,6 +144,32 @@ def test_arbitrary_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFact
     path.write_text(text, encoding="utf-8")
     with contextlib.suppress(UsageError):
         assert all(connected(s.cells) for s in load_task(path).shapes)
+
+
+@given(damaged(b'[sizes]\nrows = [4, 6]\n[[shape]]\nlabel = "4"\ngrid = """\n#.#\n###\n..#\n"""\n'))
+def test_any_bytes_are_read_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "shapes.toml"
+    path.write_bytes(content)
+    refusal = ""
+    try:
+        assert load_task(path).shapes
+    except UsageError as error:
+        refusal = str(error)
+    assert refusal == "" or refusal.startswith(str(path))
+    assert "\n" not in refusal
+    assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    ("value", "reason"), [("9" * 5000, "a number has too many digits"), ("[" * 2000, "nested too deeply")]
+)
+def test_a_number_or_a_list_without_end_is_named(value: str, reason: str, tmp_path: Path) -> None:
+    path = tmp_path / "shapes.toml"
+    path.write_text(f"orientations = {value}\n")
+    with pytest.raises(UsageError, match=f"not valid TOML: {reason}"):
+        load_task(path)
 
 
 def test_a_drawing_with_more_tiles_than_ids_is_named(tmp_path: Path) -> None:

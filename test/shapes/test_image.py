@@ -1,11 +1,15 @@
 """Pictures become drawings."""
 
+import io
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 
+from support.strategies import damaged
 from tilenca.base.errors import UsageError
 from tilenca.shapes.image import cropped, drawing_of, largest_part, pooled, read_image
 
@@ -61,3 +65,37 @@ def test_what_is_no_picture_is_refused_with_a_remedy(tmp_path: Path, what: str) 
         file.write_bytes(whole[: len(whole) // 2])
     with pytest.raises(UsageError, match=r"mine.png: .*; "):
         read_image(file)
+
+
+def as_file(kind: str) -> bytes:
+    """A small chequered picture as a file."""
+    file = io.BytesIO()
+    Image.fromarray(np.indices((8, 8)).sum(0).astype(np.uint8) % 2 * 255).save(file, kind)
+    return file.getvalue()
+
+
+@given(st.sampled_from(["PNG", "GIF", "BMP", "JPEG"]).map(as_file).flatmap(damaged))
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::PIL.Image.DecompressionBombWarning")
+def test_any_bytes_are_a_picture_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = tmp_path_factory.mktemp("fuzz") / "picture.png"
+    path.write_bytes(content)
+    refusal = ""
+    try:
+        ink = read_image(path)
+    except UsageError as error:
+        refusal = str(error)
+    else:
+        assert ink.min() == 0
+        assert ink.max() == 1
+    assert refusal == "" or refusal.startswith(str(path))
+    assert "\n" not in refusal
+
+
+def test_a_png_with_a_broken_chunk_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "picture.png"
+    whole = as_file("PNG")
+    path.write_bytes(whole.replace(b"IDAT", b"[[[["))
+    with pytest.raises(UsageError, match="not a picture that can be read"):
+        read_image(path)

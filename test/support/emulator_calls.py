@@ -183,7 +183,7 @@ def other_bad_calls(w: World) -> dict[str, list[tuple[Any, ...]]]:
         "tile_set_fuses": [(a, 0, *(256 if i == wrong else 0 for i in range(4))) for wrong in range(4)],
         "tile_send": [(a, 0, null, 1)],
         "tile_hold_pin": [(a, 0, *pin, 1) for pin in pins],
-        "tile_push_edge": [(a, 0, *pin, 100, 1) for pin in pins],
+        "tile_push_edge": [*((a, 0, *pin, 100, 1) for pin in pins), (a, 0, b"B", 5, 2**62 + 1, 1)],
         "tile_set_analog": [(a, 0, 16, 0), (a, 0, 2**32 - 1, 0), (a, 0, 0, 1024)],
         "tile_set_supply": [(a, 0, volts) for volts in (1.7, 5.6, *NO_NUMBERS)],
         "tile_set_adc_noise": [(a, 0, deviation, 0) for deviation in (-1.0, *NO_NUMBERS)],

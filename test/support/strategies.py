@@ -56,3 +56,24 @@ sentences: st.SearchStrategy[Sentence] = st.one_of(
     st.builds(AckSentence, tiles, st.just("SET"), st.just(("id", "7"))),
     st.builds(NakSentence, tiles, st.just("UNKNOWN"), st.text("AB", max_size=9)),
 )
+
+
+def damaged(whole: bytes) -> st.SearchStrategy[bytes]:
+    """A good file with pieces of it replaced, left out or repeated; or any bytes at all.
+
+    Among the pieces is what readers stumble over: brackets that never close, numbers that never end, bytes
+    that are no UTF-8.
+    """
+    endless = [b"[" * 2000, b'{"a":' * 2000, b"9" * 5000]
+    short = [b"1e999", b"null", b"[]", b"{}", b"-1", b"\xff", b"\0", b'"']
+    pieces = st.binary(max_size=8) | st.sampled_from(endless + short)
+    places = st.integers(0, len(whole))
+
+    def spliced(changes: list[tuple[int, int, bytes]]) -> bytes:
+        content = whole
+        for place, length, piece in changes:
+            content = content[:place] + piece + content[place + length :]
+        return content
+
+    changes = st.lists(st.tuples(places, st.integers(0, 12), pieces), min_size=1, max_size=4)
+    return changes.map(spliced) | places.map(lambda place: whole[:place]) | pieces | st.binary()

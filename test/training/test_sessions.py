@@ -5,7 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import given
 
+from support.strategies import damaged
 from tilenca.base.errors import TilencaError
 from tilenca.training import sessions
 from tilenca.training.sessions import FILE, noted, sessions_of
@@ -118,3 +120,10 @@ def test_the_first_failure_is_the_one_that_is_told(tmp_path: Path) -> None:
         fail()
     with pytest.raises(TilencaError, match="give another --out"), noted(folder, "", "quick", goes_on=False):
         pass
+
+
+@given(damaged(b'[{"began": "a", "command": "b", "recipe": "c", "seconds": null, "host": "h", "pid": 3}]'))
+def test_any_bytes_are_sessions_or_none(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+    folder = tmp_path_factory.mktemp("fuzz")
+    (folder / FILE).write_bytes(content)
+    assert all(isinstance(session.is_running, bool) for session in sessions_of(folder))

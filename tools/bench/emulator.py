@@ -98,6 +98,8 @@ def measure(rounds: int, directory: Path) -> list[tuple[str, str, str]]:
         set_up.append(-set_up_ms(busy, TILES))
         for count in COUNTS:
             cost[count].append(count * times_real_time(busy, count, 2.0 / count))
+    if their_mhz:
+        emulator_firmware.note_ratios("one busy tile, against libsimavr", ours_mhz, their_mhz)
     one = best(cost[1])
     ratio = (
         f"{best(ours_mhz) / best(their_mhz):.1f} times libsimavr"

@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.figures import note, of_rounds
 from bench.reference import COMMIT, host_of_reference, native
 from tilenca.base.errors import BuildError
 from tilenca.base.paths import ROOT
@@ -89,12 +90,23 @@ class Against:
             self._theirs_s.append(theirs["cpuS"])
             self._ours_s.append(ours["cpuS"])
 
+    def note(self, name: str) -> None:
+        """Keeps the ratio of each round."""
+        note_ratios(f"{WORDS[name]}, against {COMMIT}", self._theirs_s, self._ours_s)
+
     def row(self, name: str) -> tuple[str, str, str]:
         """The ratio of their best processor times."""
         what = f"firmware, {WORDS[name]}, processor time at {COMMIT}"
         if self._before is None:
             return what, "not measured: this clone has no history", "3.5 times as much"
         return what, f"{min(self._theirs_s) / min(self._ours_s):.2f} times as much", "3.5 times as much"
+
+
+def note_ratios(name: str, slow_s: Sequence[float], fast_s: Sequence[float]) -> None:
+    """Keeps how many times the second is as fast as the first, of rounds in which they took turns."""
+    if len(slow_s) > 1:
+        ratios = [slow / fast for slow, fast in zip(slow_s, fast_s, strict=True)]
+        note(of_rounds(f"emulator: {name}", ratios, "times as fast"))
 
 
 def block(rows: int, columns: int) -> str:
@@ -132,6 +144,13 @@ def measure(rounds: int, elf: Path, simavr: Path | None) -> list[tuple[str, str,
             case.measure()
         if simavr is not None:
             theirs.append(simavr_s(simavr, elf))
+    note_ratios("one tile, against libsimavr", theirs, starts[0].cpu_s[: len(theirs)])
+    for name, words in WORDS.items():
+        note_ratios(f"{words}, against the interpreter", plain[name].cpu_s, fast[name].cpu_s)
+    each_s = [cpu_s / SIZES[20][0] / SIZES[20][1] for cpu_s in sized[20].cpu_s]
+    note_ratios("one of twenty tiles, against a lone one", sized[1].cpu_s, each_s)
+    for name, pair in against.items():
+        pair.note(name)
     return [
         *rows(plain, fast, two, starts, sized, theirs),
         *(pair.row(name) for name, pair in against.items()),

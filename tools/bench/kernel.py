@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.emulator import SOURCES
+from bench.figures import exact, note
 from bench.publish import publish
 from firmware import kernel_program
 from firmware.synthetic_models import network
@@ -150,6 +151,7 @@ def measure(model: Model, given: Given, with_float: bool = False) -> Cycles:
 def row(what: str, size: Dimensions, found: Cycles) -> tuple[str, ...]:
     """A line of the table."""
     count = cost.macs(size)
+    note(exact(f"kernel: {what.replace('`', '')}", found.assembly, "cycles"))
     floating = "" if found.floating is None else f"{found.floating / count:.0f}"
     return (
         what,

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench import soak
+from bench.figures import exact, note
 from bench.publish import publish
 from firmware import cost_fit, profile
 from tilenca.base import paths
@@ -96,6 +97,12 @@ def links_table(seconds: float, pair_seconds: float) -> list[str]:
     """Frames lost, ours and theirs."""
     with tempfile.TemporaryDirectory() as folder:
         soaked = soak.soak(cost_fit.build(soak.small_model(), Path(folder)), soak.PERIOD_MS, seconds)
+    kinds = (
+        ("between USARTs", soaked.hardware),
+        ("to the software side", soaked.to_software),
+        ("from the software side", soaked.from_software),
+    )
+    note(*(exact(f"links: frames lost {words}", frames.damaged, "frames") for words, frames in kinds))
     rows = [
         f"| this firmware, every {soak.PERIOD_MS} ms, all four sides, awake {soaked.awake:.0%} | "
         f"{frames_lost(soaked.to_software)} | {frames_lost(soaked.from_software)} | "

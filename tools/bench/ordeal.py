@@ -1,265 +1,54 @@
 """Twenty emulated tiles through everything that hands, cables and power do to them: `make soak TIME=600`.
 
 Drawings come and go tile by tile, cables lose, invert and are cut, tiles lose their power, are reset into the
-boot loader, hear noise on USB and get new settings. Now and then all is mended and left alone. Then every
-tile has to run, to name the drawing, and to have settings that it was given. A tile's updates never go back
-unless it restarted.
+boot loader, which a programmer may begin to talk to, hear noise on USB and get new settings. Now and then all
+is mended and left alone. Then every tile has to run, to name the drawing, and to have settings that it was
+given, and both ends of a link have to count the same frames. A tile's updates never go back unless it
+restarted. The memory of this process must not grow.
 """
 
 import argparse
-import random
-import resource
 import sys
 import time
-from collections import Counter
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 
+from bench.ordeal_checks import Findings, MemoryWatch, memory_mb
+from bench.ordeal_table import PATIENCE, UPDATES, Ordeal
+from bench.publish import publish
 from tilenca.base import paths
+from tilenca.base.commit import commit
 from tilenca.base.processors import processors
-from tilenca.base.sides import EAST, OFFSETS, SOUTH
-from tilenca.emulator import Array, LinkFault, ResetCause
-from tilenca.emulator.serve import STOCK_BOOTLOADER
-from tilenca.emulator.wiring import cables
-from tilenca.protocol.commands import restart_command, set_command
-from tilenca.protocol.constants import SETTINGS_SIZE
-from tilenca.protocol.line_reader import LineReader
-from tilenca.protocol.sentences import HelloSentence, TileSentence
-from tilenca.protocol.settings import Settings, parse_settings, settings_block
-from tilenca.shapes.file import Shape, load_task
-from tilenca.shapes.glyphs import label_of_glyph
 
-ROWS, COLUMNS = 5, 4
-PERIODS_MS = (20, 25, 40)
-FIELDS = {"period": "period_ms", "brightness": "brightness"}  # of Settings, by their names on the wire
-BETWEEN_S, DEEDS_TO_CALM, SLICE_S = 0.25, 12, 0.05
-# After all is mended: boot loader and start, and 100 updates of the longest period.
-CALM_S = 2.5 + 0.5 + 100 * max(PERIODS_MS) / 1000
-TALKS_WITHIN_S = 1.0
-NOISE = 40  # bytes at most
+BETWEEN_S, DEEDS_TO_CALM = 0.25, 12
 TELL_EVERY_S = 60.0
-BEGAN_AGAIN = 50  # updates that a tile may have done, of those it counts anew, when it tells so first
-
-Cell = tuple[int, int]
-
-
-@dataclass
-class Findings:
-    """What was done, and what should not have been.
-
-    Attributes:
-        deeds: how often, by kind.
-        calms: how often all was mended and left alone.
-        late: drawings that were not named by all tiles when that ended: the model's part.
-        broken: what no model explains, in words.
-    """
-
-    deeds: Counter[str] = field(default_factory=Counter)
-    calms: int = 0
-    late: list[str] = field(default_factory=list)
-    broken: list[str] = field(default_factory=list)
-
-    def summary(self) -> str:
-        """The numbers."""
-        return (
-            f"{sum(self.deeds.values())} deeds, {self.calms} times left alone and looked at, "
-            f"{len(self.broken)} things broken, {len(self.late)} drawings not named in time"
-        )
+BEGIN, END = (
+    "<!-- soak: made by `make soak TIME=3600 WRITE=docs/BENCHMARKS.md`, do not edit -->",
+    "<!-- /soak -->",
+)
 
 
-class Ordeal:
-    """A table with room for twenty tiles, all cables laid; tiles that are not there have no power."""
-
-    def __init__(self, elf: Path, seed: int, threads: int) -> None:
-        self.draw = random.Random(seed)
-        self.task = load_task(paths.DEFAULT_SHAPES)
-        self.drawings = [shape for shape in self.task.shapes if len(shape.rows) == ROWS]
-        everywhere = Shape("8", ("#" * COLUMNS,) * ROWS, "table")
-        self.places: dict[Cell, int] = {cell: index for index, cell in enumerate(everywhere.cells)}
-        ppm = [self.draw.uniform(-5000, 5000) for _ in self.places]
-        boot = STOCK_BOOTLOADER if STOCK_BOOTLOADER.exists() else None
-        self.array = Array(elf, len(self.places), cables(everywhere), ppm, threads=threads, bootloader=boot)
-        # What each tile may have: with every change since the last look, or without those that were lost.
-        self.given = {i: {Settings(i + 1, PERIODS_MS[0], 0)} for i in range(len(self.array))}
-        for tile in self.array:
-            tile.write_eeprom(0, settings_block(tile.index + 1, PERIODS_MS[0], 0))
-            tile.powered = False
-        self.readers = [LineReader() for _ in self.array]
-        self.updates: dict[int, int] = {}
-        self.said_s: dict[int, float] = {}
-        self.tiles: set[Cell] = set()
-        self.harmed: set[tuple[int, int]] = set()
-        self.cut: set[tuple[int, int]] = set()
-        self.drawing = self.drawings[0]
-        self.findings = Findings()
-
-    def run(self, seconds: float) -> None:
-        """Runs the table and reads what its tiles say."""
-        end_s = self.array.time_s + seconds
-        while self.array.time_s < end_s:
-            self.array.run(SLICE_S)
-            for tile in self.array:
-                for _, sentence in self.readers[tile.index].feed(tile.read_serial()):
-                    self._heard(tile.index, sentence)
-                if tile.fault:
-                    self._broken(tile.fault)
-
-    def _broken(self, what: str) -> None:
-        self.findings.broken.append(f"{self.array.time_s:.2f} s: {what}")
-
-    def _heard(self, index: int, sentence: object) -> None:
-        if isinstance(sentence, HelloSentence):
-            self.updates[index] = 0
-        elif isinstance(sentence, TileSentence):
-            had = self.updates.get(index, 0)
-            if BEGAN_AGAIN < sentence.updates < had:
-                self._broken(f"tile {index + 1} counted {had} updates, then {sentence.updates}")
-            self.updates[index] = sentence.updates
-            self.said_s[index] = self.array.time_s
-
-    # --- deeds ---
-
-    def deed(self) -> None:
-        """Does one thing to the table."""
-        kinds = (
-            (self.step_to_a_drawing, 8),
-            (self.spoil_a_cable, 3),
-            (self.cut_a_cable, 2),
-            (self.pull_the_plug, 2),
-            (self.reset, 2),
-            (self.change_a_setting, 3),
-            (self.make_noise_on_usb, 2),
-            (self.begin_again, 1),
-        )
-        (chosen,) = self.draw.choices([kind for kind, _ in kinds], [weight for _, weight in kinds])
-        chosen()
-        self.findings.deeds[chosen.__name__.replace("_", " ")] += 1
-
-    def _a_tile(self) -> int:
-        return self.places[self.draw.choice(sorted(self.tiles))]
-
-    def _wanted(self) -> set[Cell]:
-        shift = COLUMNS - 1 - max(column for _, column in self.drawing.cells)
-        return {(row, column + shift) for row, column in self.drawing.cells}
-
-    def step_to_a_drawing(self) -> None:
-        """Puts down or takes away a tile that the drawing has or has not; another drawing when it is done."""
-        wanted = self._wanted()
-        if self.tiles == wanted:
-            self.drawing = self.draw.choice(self.drawings)
-            wanted = self._wanted()
-        near = {(row + down, column + right) for row, column in self.tiles for down, right in OFFSETS}
-        missing = sorted((wanted - self.tiles) & near) or sorted(wanted - self.tiles)
-        cell = self.draw.choice(missing or sorted(self.tiles - wanted) or sorted(self.tiles))
-        self._put(cell, on=bool(missing))
-
-    def _put(self, cell: Cell, on: bool) -> None:
-        self.array[self.places[cell]].powered = on
-        (self.tiles.add if on else self.tiles.discard)(cell)
-        self.updates.pop(self.places[cell], None)
-
-    def _a_cable(self) -> tuple[int, int]:
-        cell = self.draw.randrange(ROWS - 1), self.draw.randrange(COLUMNS - 1)
-        return self.places[cell], self.draw.choice((EAST, SOUTH))
-
-    def spoil_a_cable(self) -> None:
-        """Lets a cable lose bytes and invert bits."""
-        end = self._a_cable()
-        fault = LinkFault(loss=self.draw.uniform(0, 0.5), flip=self.draw.choice((0, 1e-3, 1e-2)))
-        self.array.set_fault(*end, fault, seed=self.draw.randrange(1 << 16))
-        self.harmed.add(end)
-
-    def cut_a_cable(self) -> None:
-        """Cuts a cable, or mends one that is cut."""
-        end = self._a_cable()
-        if end in self.cut:
-            self.array.mend(*end)
-            self.cut.discard(end)
-        else:
-            self.array.cut(*end)
-            self.cut.add(end)
-
-    def pull_the_plug(self) -> None:
-        """Takes the power of a tile, or of all, for a moment."""
-        every = self.draw.random() < 0.2
-        hit = [self.places[cell] for cell in sorted(self.tiles)] if every else [self._a_tile()]
-        for index in hit:
-            self.array[index].powered = False
-        self.run(self.draw.choice((0.001, 0.05, 0.2)))
-        for index in hit:
-            self.array[index].powered = True
-            self.updates.pop(index, None)
-
-    def reset(self) -> None:
-        """Resets a tile, as the USB bridge or a supply that gives way does: the boot loader comes first."""
-        index = self._a_tile()
-        self.array[index].reset(self.draw.choice((ResetCause.EXTERNAL, ResetCause.BROWN_OUT)))
-        self.updates.pop(index, None)
-
-    def change_a_setting(self) -> None:
-        """Sends a setting; sometimes the power goes while it is written."""
-        index = self._a_tile()
-        period_ms, brightness = self.draw.choice(PERIODS_MS), self.draw.randrange(1, 256)
-        name, value = self.draw.choice([("period", period_ms), ("brightness", brightness)])
-        self.given[index] |= {replace(old, **{FIELDS[name]: value}) for old in self.given[index]}
-        self.array[index].write_serial(set_command(name, value))
-        if self.draw.random() < 0.3:
-            self.run(SLICE_S)
-            self.array[index].powered = False
-            self.run(SLICE_S)
-            self.array[index].powered = True
-            self.updates.pop(index, None)
-
-    def make_noise_on_usb(self) -> None:
-        """Sends bytes that are no command."""
-        self.array[self._a_tile()].write_serial(self.draw.randbytes(self.draw.randrange(1, NOISE)) + b"\r\n")
-
-    def begin_again(self) -> None:
-        """Lets a tile begin again from the seed, as its button does."""
-        index = self._a_tile()
-        self.updates.pop(index, None)
-        self.array[index].write_serial(restart_command())
-
-    # --- calm ---
-
-    def calm(self) -> None:
-        """Mends everything, completes the drawing, waits, and looks."""
-        for end in sorted(self.cut):
-            self.array.mend(*end)
-        for end in sorted(self.harmed):
-            self.array.set_fault(*end, LinkFault())
-        self.cut, self.harmed = set(), set()
-        for cell in sorted(self._wanted() ^ self.tiles):
-            self._put(cell, on=cell not in self.tiles)
-        self.run(CALM_S)
-        self.findings.calms += 1
-        self._look()
-
-    def _look(self) -> None:
-        now_s = self.array.time_s
-        labels = []
-        for cell in sorted(self.tiles):
-            index = self.places[cell]
-            tile = self.array[index]
-            labels.append(label_of_glyph(tile.segments, self.task.labels))
-            if now_s - (said_s := self.said_s.get(index, 0)) > TALKS_WITHIN_S:
-                self._broken(f"tile {index + 1} is stuck: silent since {said_s:.2f} s")
-            found = parse_settings(tile.read_eeprom(0, SETTINGS_SIZE))
-            if found is None or found not in self.given[index]:
-                self._broken(f"tile {index + 1} has settings that nobody gave it: {found}")
-            else:
-                self.given[index] = {found}
-        if set(labels) != {self.drawing.label}:
-            self.findings.late.append(f"{now_s:.2f} s: {self.drawing.label} shows {' '.join(labels)}")
-
-
-def ordeal(elf: Path, seconds: float, seed: int, threads: int, progress: bool = False) -> Findings:
+def ordeal(
+    elf: Path,
+    seconds: float,
+    seed: int,
+    threads: int,
+    on_calm: Callable[[float, Findings], None] | None = None,
+) -> Findings:
     """Runs the table for so many emulated seconds.
+
+    Args:
+        elf: the image.
+        seconds: of the tiles' time.
+        seed: of all that happens.
+        threads: that share the work; they change nothing.
+        on_calm: called with the tiles' time and what was found so far, each time that all was left alone.
 
     Raises:
         TilencaError: the image cannot be run.
     """
-    table, told = Ordeal(elf, seed, threads), time.monotonic()
+    table = Ordeal(elf, seed, threads)
     with table.array:
         table.calm()
         while table.array.time_s < seconds:
@@ -267,16 +56,44 @@ def ordeal(elf: Path, seconds: float, seed: int, threads: int, progress: bool = 
                 table.deed()
                 table.run(BETWEEN_S)
             table.calm()
-            if progress and time.monotonic() - told > TELL_EVERY_S:
-                told = time.monotonic()
-                print(_line(table), file=sys.stderr, flush=True)
+            if on_calm is not None:
+                on_calm(table.array.time_s, table.findings)
     return table.findings
 
 
-def _line(table: Ordeal) -> str:
-    found = table.findings
-    memory_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return f"{table.array.time_s:.0f} s of the tiles' time; {found.summary()}; {memory_mb:.0f} MB at most"
+class Progress:
+    """Tells on stderr how far it is, and watches the memory."""
+
+    def __init__(self, seconds: float) -> None:
+        self.memory = MemoryWatch()
+        self._seconds, self._told_s = seconds, time.monotonic()
+
+    def __call__(self, time_s: float, found: Findings) -> None:
+        """After each time that all was left alone."""
+        passed = self.memory.look(time_s / self._seconds)
+        if passed or time.monotonic() - self._told_s > TELL_EVERY_S:
+            self._told_s = time.monotonic()
+            line = f"{time_s:.0f} of {self._seconds:.0f} s of the tiles' time; {found.summary()}"
+            print(f"{line}; {memory_mb():.0f} MB", file=sys.stderr, flush=True)
+
+
+def section(found: Findings, seconds: float, seed: int, memory: MemoryWatch) -> str:
+    """The result in Markdown."""
+    deeds = ", ".join(f"{kind} {times:,}" for kind, times in sorted(found.deeds.items()))
+    rows = [
+        ("deeds", f"{sum(found.deeds.values()):,}: {deeds}"),
+        ("left alone and looked at", f"{found.calms:,} times"),
+        ("both ends of a link compared", f"{found.links:,} times"),
+        ("frames lost meanwhile", f"{found.lost:,} of {found.frames:,}"),
+        (f"drawings not named by all tiles within {UPDATES} updates", f"{len(found.late)}"),
+        (f"the same, within {UPDATES * (1 + PATIENCE)}; tiles stuck; settings that nobody gave; counts that "
+         "do not add up", f"{len(found.broken)}"),
+        ("memory of the process", memory.words()),
+    ]  # fmt: skip
+    lines = ["| twenty emulated tiles through everything | |", "|---|---|"]
+    lines += [f"| {name} | {value} |" for name, value in rows]
+    when = f"{datetime.now(UTC).date().isoformat()}, commit {commit()}"
+    return "\n".join([*lines, "", f"{seconds:,.0f} s of the tiles' time, seed {seed}; {when}."])
 
 
 def main() -> int:
@@ -285,11 +102,13 @@ def main() -> int:
     add = parser.add_argument
     add("--seconds", type=float, default=600.0, help="of the tiles' time (default: %(default)s)")
     add("--seed", type=int, default=1, help="of all that happens (default: %(default)s)")
+    add("--write", type=Path, metavar="F", help="put the result into this document")
     args = parser.parse_args()
-    found = ordeal(paths.FIRMWARE_ELF, args.seconds, args.seed, processors(), progress=True)
-    for kind, times in sorted(found.deeds.items()):
-        print(f"{times:6d} times {kind}")
-    print(found.summary())
+    progress = Progress(args.seconds)
+    found = ordeal(paths.FIRMWARE_ELF, args.seconds, args.seed, processors(), progress)
+    if (drift := progress.memory.drift()) is not None:
+        found.broken.append(drift)
+    publish(section(found, args.seconds, args.seed, progress.memory), args.write, BEGIN, END)
     for line in (*found.broken, *found.late):
         print(line)
     return int(bool(found.broken))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.figures import exact, note, of_rounds
 from firmware import budgets
 from tilenca.base import paths
 from tilenca.emulator.experiment import Emulation, EmulationSettings
@@ -45,6 +46,11 @@ def emulation(elf: Path, seconds: float) -> list[str]:
     updates = sum(tile["updates"] for tile in tiles)
     frames = {name: sum(tile["frames"][name] for tile in tiles) for name in tiles[0]["frames"]}
     ratio = seconds / wall_s
+    note(
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, awake", awake / updates, "cycles an update"),
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, frames lost", frames["lost"], "frames"),
+        exact(f"firmware: an {SHAPE} for {seconds:.0f} s, frames damaged", frames["corrupt"], "frames"),
+    )
     return [
         f"{'cycles awake/update':<22} {awake / updates:>8,.0f}, all told: network, links, display, telemetry",
         f"{'share of time awake':<22} {awake / sum(total for total, _ in cycles):>8.1%}",
@@ -76,10 +82,18 @@ def simulator() -> list[str]:
         core_library.update_cells(model, simulator.states, inputs, lanes=1)
         alone.append(simulator.cells / (time.process_time() - started_s))
     speed, ratio = np.median(whole), np.median(np.divide(whole, alone))
+    ratios = np.divide(whole, alone).tolist()
+    note(of_rounds("simulator: against the chip's code alone", ratios, "times as fast"))
     return [
         f"{'simulation, one core':<22} {speed / 1e6:.1f} million cell updates/s with clocks, links and loss, "
         f"{ratio:.1f} times the chip's code alone"
     ]
+
+
+def note_budget(finding: budgets.Finding) -> None:
+    """Keeps the number of a budget."""
+    if finding.value is not None:
+        note(exact(f"firmware: {finding.name}", *finding.value))
 
 
 def main() -> int:
@@ -90,7 +104,7 @@ def main() -> int:
     parser.add_argument("elf", type=Path, help="the image, as .pio/build/megaatmega2560/firmware.elf")
     parser.add_argument("--seconds", type=float, default=20.0, help="emulated time (default: %(default)s)")
     args = parser.parse_args()
-    status = budgets.report(args.elf)
+    status = budgets.report(args.elf, note_budget)
     print("\n".join(emulation(args.elf, args.seconds)), flush=True)
     print("\n".join(simulator()), flush=True)
     return status

@@ -13,6 +13,7 @@ import torch
 import torch.nn.functional as F  # noqa: N812 - the usual name
 from torch import Tensor
 
+from bench.figures import note, of_rounds
 from tilenca.base import paths
 from tilenca.model.file import Dimensions
 from tilenca.shapes.batch import load_drawings
@@ -57,9 +58,12 @@ def seconds_of(do: Callable[[], Tensor], net: TileNet) -> float:
     return time.process_time() - started_s
 
 
-def ratio(slow: Callable[[], Tensor], fast: Callable[[], Tensor], net: TileNet) -> float:
+def ratio(name: str, slow: Callable[[], Tensor], fast: Callable[[], Tensor], net: TileNet) -> float:
     """The time of the first as a multiple of the second's; the two take turns."""
-    return float(np.median([seconds_of(slow, net) / seconds_of(fast, net) for _ in range(TURNS)]))
+    turns = [seconds_of(slow, net) / seconds_of(fast, net) for _ in range(TURNS)]
+    found = of_rounds(f"training: against {name}", turns, "times as fast")
+    note(found)
+    return found.value
 
 
 def main() -> int:
@@ -110,10 +114,11 @@ def main() -> int:
     print(f"training: a rollout of {BATCH} drawings and its gradient, one thread, {kind}")
     ways = {"convolutions over the padded grid": convolved, "plain PyTorch on real tiles": by_pytorch}
     for name, way in ways.items():
-        print(f"  {ratio(way, ours, net):.1f} times faster than {name}")
+        print(f"  {ratio(name, way, ours, net):.1f} times faster than {name}")
     net.update = torch.compile(net.update)  # type: ignore[method-assign]
     by_pytorch().sum().backward()  # type: ignore[no-untyped-call]
-    print(f"  {ratio(by_pytorch, ours, net):.1f} times faster than the latter with torch.compile")
+    compiled = ratio("torch.compile", by_pytorch, ours, net)
+    print(f"  {compiled:.1f} times faster than the latter with torch.compile")
     return int(apart > 1e-4)
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from bench import chromium
+from bench.figures import exact, note, of_rounds
 from bench.publish import publish
 from bench.reference import COMMIT, Measured, host_of_reference, native, told
 from tilenca.base.errors import BuildError
@@ -70,11 +71,20 @@ def measure(rounds: int) -> list[tuple[str, str]]:
     """Name and figure; one row per figure."""
     found = cases()
     best: dict[str, Measured] = {}
+    cpu_s: dict[str, list[float]] = {name: [] for name in found}
     for _ in range(rounds):
         for name, run in found.items():
             told = run()
+            cpu_s[name].append(told["cpuS"])
             known = best.setdefault(name, told)
             best[name] = {key: min(value, known[key]) for key, value in told.items()}
+    if rounds > 1:
+        for name, seconds in cpu_s.items():
+            shares = [native_s / own_s for native_s, own_s in zip(cpu_s["native"], seconds, strict=True)]
+            if name != "native":
+                note(of_rounds(f"web: {name}", shares, "times native"))
+    for module in ("emulator", "simulator"):
+        note(exact(f"web: module {module}", (BUNDLE / f"tilenca_{module}.wasm").stat().st_size, "bytes"))
     base = best["native"]["cpuS"]
     rows = [
         (

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,12 +21,21 @@ BUDGETS = Path(__file__).with_name("budgets.toml")
 
 @dataclass(frozen=True)
 class Finding:
-    """One budget and its result."""
+    """One budget and its result.
+
+    Attributes:
+        name: what is measured.
+        measured: in words.
+        limit: in words.
+        holds: whether the limit is kept.
+        value: the number and its unit, of what is a number.
+    """
 
     name: str
     measured: str
     limit: str
     holds: bool
+    value: tuple[float, str] | None = None
 
 
 def read_budgets() -> dict[str, Any]:
@@ -47,7 +57,7 @@ def check_sizes(firmware: Firmware, stack_bytes: int, limits: dict[str, int]) ->
         "stack": stack_bytes,
     }
     return [
-        Finding(name, f"{size:,} bytes", f"{limits[name]:,}", size <= limits[name])
+        Finding(name, f"{size:,} bytes", f"{limits[name]:,}", size <= limits[name], (size, "bytes"))
         for name, size in measured.items()
     ]
 
@@ -74,7 +84,7 @@ def check_text(firmware: Firmware, text: str) -> Finding:
 def check_cycles(elf: Path, limit: int) -> Finding:
     """Whether a tile of an array completes an update, its links included, in time."""
     awake = cost_fit.awake(elf, DEFAULT_PERIOD_MS)
-    return Finding("cycles per update", f"{awake:,.0f}", f"{limit:,}", awake <= limit)
+    return Finding("cycles per update", f"{awake:,.0f}", f"{limit:,}", awake <= limit, (awake, "cycles"))
 
 
 def check(elf: Path, budgets: dict[str, Any]) -> list[Finding]:
@@ -96,14 +106,20 @@ def check(elf: Path, budgets: dict[str, Any]) -> list[Finding]:
     ]
 
 
-def report(elf: Path) -> int:
-    """Prints the findings as a table; returns 0 if every budget holds, 1 if not, 4 if it cannot measure."""
+def report(elf: Path, on_finding: Callable[[Finding], None] = lambda finding: None) -> int:
+    """Prints the findings as a table; returns 0 if every budget holds, 1 if not, 4 if it cannot measure.
+
+    Args:
+        elf: the image.
+        on_finding: called with each.
+    """
     try:
         findings = check(elf, read_budgets())
     except (OSError, ValueError, TilencaError, stack.StackError, subprocess.CalledProcessError) as error:
         print(f"budgets: {error}", file=sys.stderr)
         return 4
     for finding in findings:
+        on_finding(finding)
         mark = "ok" if finding.holds else "EXCEEDED"
         print(f"{finding.name:<22} {finding.measured:>14}   of {finding.limit:<8} {mark}")
     return 0 if all(finding.holds for finding in findings) else 1

@@ -1,1 +1,1 @@
-"""What parses in the firmware, under libFuzzer with sanitizers: python -m fuzz, or make fuzz."""
+"""What parses in firmware and emulator, under libFuzzer with sanitizers: python -m fuzz, or make fuzz."""

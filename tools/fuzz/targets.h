@@ -1,13 +1,24 @@
-// What is fuzzed: each takes any bytes, and must neither misbehave nor break what it promises.
+// What of the firmware and of the emulator is fuzzed: each takes any bytes, and must neither misbehave nor
+// break what it promises.
 #pragma once
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 namespace tilenca {
 namespace fuzz {
 
 using Target = void (*)(const uint8_t* bytes, size_t size);
+
+// Stops at what must not be, in every build.
+inline void must(bool holds, const char* what) {
+    if (!holds) {
+        fprintf(stderr, "fuzz: %s\n", what);
+        abort();
+    }
+}
 
 // Bytes of a line, to a link of a tile.
 void frames(const uint8_t* bytes, size_t size);
@@ -18,7 +29,19 @@ void commands(const uint8_t* bytes, size_t size);
 // An EEPROM, which a tile starts with; the first byte says where the power fails.
 void settings(const uint8_t* bytes, size_t size);
 
-// The target of a name; nullptr: there is none.
+// A list of changes of a real snapshot, whose checksum is made right again; what loads must run and be saved.
+void snapshots(const uint8_t* bytes, size_t size);
+
+// An ELF or Intel HEX file.
+void images(const uint8_t* bytes, size_t size);
+
+// Calls of the emulator's C interface, one after the other, with any arguments.
+void calls(const uint8_t* bytes, size_t size);
+
+// The names of the targets of a program, and what stands between them; for its help.
+const char* names();
+
+// The target of a name; nullptr: this program has none.
 Target target_of(const char* name);
 
 } // namespace fuzz

@@ -1,7 +1,6 @@
 """A Dask client: its own workers on this machine, or a scheduler elsewhere. Needs the extra `sweep`."""
 
 import gc
-import json
 import logging
 import signal
 import threading
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import TilencaError, UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.project import install_remedy
 from tilenca.base.stdio import warn
 from tilenca.cluster.fingerprint import fingerprint
@@ -211,7 +211,7 @@ def _address_of(given: str) -> str:
             raise ValueError("neither an address with a port nor the file of a Dask scheduler")
         time.sleep(LOOK_S)
     try:
-        return str(json.loads(path.read_text(encoding="utf-8"))["address"])
+        return str(read_json(path.read_text(encoding="utf-8"))["address"])
     except (ValueError, KeyError, TypeError) as error:
         raise ValueError("not the file of a Dask scheduler") from error
 

@@ -1,13 +1,13 @@
 """A model knows what it was made of: its shape files, and which model a firmware carries."""
 
 import hashlib
-import json
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.file import UNKNOWN
@@ -71,7 +71,7 @@ def model_with_id(model_id: int, first: Path | None = None) -> tuple[Model, Path
     """
     for about in [*([first / "model.json"] if first else []), *_descriptions()]:
         with suppress(OSError, ValueError, AttributeError):
-            if json.loads(about.read_text(encoding="utf-8")).get("model_id") != f"{model_id:04X}":
+            if read_json(about.read_text(encoding="utf-8")).get("model_id") != f"{model_id:04X}":
                 continue
             with suppress(UsageError):
                 return load_model(about.parent), about.parent

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.shipped import model_folder
 from tilenca.commands.arguments import OWN_SHAPES, add_model_argument, add_shapes_argument, seed, whole
 from tilenca.commands.origin import shapes_or_own
@@ -118,7 +119,7 @@ def _targets(path: Path) -> "dict[str, Targets]":
     from tilenca.views.abilities import targets_by_kind
 
     try:
-        return targets_by_kind(json.loads(path.read_text(encoding="utf-8")))
+        return targets_by_kind(read_json(path.read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError):
         return {}
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.commands.plot import HISTORY_FILE, read_history
 from tilenca.model.file import checkpoints, load_model
@@ -142,10 +143,10 @@ def _metrics(path: Path) -> dict[str, Any]:
         UsageError: they are damaged.
     """
     try:
-        metrics = json.loads(path.read_text(encoding="utf-8"))
+        metrics = read_json(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{path}: cannot be read ({error}); train again") from error
     if not isinstance(metrics, dict) or not _are_metrics(metrics):
         raise UsageError(f"{path}: not the metrics of a model; train again")

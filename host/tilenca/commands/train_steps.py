@@ -2,16 +2,13 @@
 
 import argparse
 import shlex
-import shutil
-import subprocess
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tilenca import __version__
-from tilenca.base import paths
+from tilenca.base.commit import commit
 from tilenca.base.errors import InterruptedRunError, TilencaError, UsageError
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
@@ -133,7 +130,7 @@ def _metadata(args: argparse.Namespace) -> dict[str, object]:
     return {
         "command": training_command(args),
         "shapes": [place_of(path) for path in args.shapes],
-        "commit": _commit(),
+        "commit": commit(),
         "recipe_name": args.recipe,
     }
 
@@ -230,15 +227,3 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)
-
-
-def _commit() -> str:
-    """The commit this runs on, `-dirty` when tracked files differ; of an installed wheel, its version."""
-    if paths.CHECKOUT is None:
-        return f"tilenca {__version__}"
-    git = shutil.which("git")
-    if git is None:
-        return "unknown"
-    words = [git, "-C", str(paths.CHECKOUT), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    return done.stdout.strip() or "unknown"

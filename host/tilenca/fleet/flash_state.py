@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
+from tilenca.base.parsing import read_json
+
 
 def _file() -> Path:
     """The user's folder for the state of programs; RuntimeError if the user has no home."""
@@ -24,7 +26,7 @@ def failed_boards() -> set[str]:
 
 def _names(text: str) -> set[str]:
     try:
-        document = json.loads(text)
+        document = read_json(text)
     except ValueError:
         return set()
     return {name for name in document if isinstance(name, str)} if isinstance(document, list) else set()

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Self
 
 from tilenca.base.errors import NoDeviceError, TilencaError, UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
@@ -103,7 +104,7 @@ def parse_event(line: str) -> Event | None:
     Raises:
         ValueError: it is none.
     """
-    about = json.loads(line)
+    about = read_json(line)
     match about:
         case {"time": float() | int() as time_s} if not 0 <= time_s <= LAST_S:
             raise ValueError(f"{time_s} is no time in seconds since 1970")
@@ -204,7 +205,7 @@ def recorded_shapes(path: Path) -> list[str]:
     with suppress(OSError, UnicodeDecodeError), path.open(encoding="ascii") as file:
         for line in file:
             with suppress(ValueError):
-                match json.loads(line):
+                match read_json(line):
                     case {"shape": str(shape)}:
                         shapes[shape] = None
     return list(shapes)

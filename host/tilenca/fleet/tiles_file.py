@@ -12,13 +12,13 @@ Rows count from the north, columns from the west.
 """
 
 import re
-import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_toml
 from tilenca.base.whole_file import write_whole
 
 DEFAULT = Path("tiles.toml")
@@ -55,7 +55,7 @@ def read_tiles(path: Path) -> list[Place]:
     """
     try:
         text = path.read_text(encoding="utf-8")
-        document = tomllib.loads(text)
+        document = read_toml(text)
     except OSError as error:
         raise UsageError(
             f"{path}: {error.strerror}; write it with `tilenca devices --learn`, or name another with --tiles"

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.shipped import model_names
 from tilenca.base.sides import SIDES
 from tilenca.model import format_1
@@ -138,7 +139,7 @@ def load_model(directory: Path) -> Model:
     """
     about_path, weights_path = directory / "model.json", directory / "weights.npz"
     try:
-        about = json.loads(about_path.read_text(encoding="utf-8"))
+        about = read_json(about_path.read_text(encoding="utf-8"))
     except OSError as error:
         if checkpoints(directory):
             raise UsageError(
@@ -148,7 +149,7 @@ def load_model(directory: Path) -> Model:
             f"{about_path}: {error.strerror}; give what `tilenca train` wrote, "
             f"or one of: {' '.join(model_names())}"
         ) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise UsageError(f"{about_path}: not a model description ({error}); train again") from error
     found = about.get("format") if isinstance(about, dict) else None
     if found not in READABLE:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.fleet.grid import Grid
 from tilenca.fleet.recording import read_recording
@@ -71,8 +72,8 @@ def _checked(path: Path, text: str) -> str:
     for number, line in enumerate(lines, start=1):
         if line.strip():
             try:
-                event = json.loads(line)
-            except (ValueError, RecursionError):
+                event = read_json(line)
+            except ValueError:
                 if number < len(lines) or line.endswith("\n"):
                     raise UsageError(f"{path}:{number}: is no event; {CHOOSE}") from None
                 warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
@@ -110,8 +111,8 @@ def _wrong_with(event: object, before: int) -> str:
 def _version(text: str) -> object | None:
     """The version of the stream in the first line of a page's recording; None where it is another file."""
     try:
-        first = json.loads(text.partition("\n")[0])
-    except (ValueError, RecursionError):
+        first = read_json(text.partition("\n")[0])
+    except ValueError:
         return None
     return first.get("stream") if isinstance(first, dict) else None
 

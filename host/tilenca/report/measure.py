@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import TilencaError
+from tilenca.base.parsing import read_json
 from tilenca.base.whole_file import write_whole
 from tilenca.cluster.client import Cluster
 from tilenca.cluster.fingerprint import fingerprint
@@ -83,7 +84,7 @@ class Folder:
     def read(self, call: Call) -> dict[str, Any] | None:
         """The result of a call; None: there is none, or it is damaged."""
         try:
-            result: dict[str, Any] = json.loads(self._file(call).read_text(encoding="utf-8"))
+            result: dict[str, Any] = read_json(self._file(call).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
         return result

@@ -8,13 +8,13 @@ their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawing
 """
 
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
+from tilenca.base.parsing import read_toml
 from tilenca.base.shipped import shapes_names
 from tilenca.base.sides import OFFSETS
 from tilenca.base.suggest import did_you_mean
@@ -135,8 +135,8 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not UTF-8 text at byte {error.start}; save the file as UTF-8") from error
     try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        document = read_toml(text)
+    except ValueError as error:
         raise UsageError(f"{path}: not valid TOML: {error}") from error
     tables = document.pop("shape", None)
     sizes = read_sizes(path, document.pop("sizes", {}))

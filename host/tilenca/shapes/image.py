@@ -3,6 +3,8 @@
 numpy only; a file is opened by Pillow, which comes with matplotlib.
 """
 
+import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,17 @@ from tilenca.shapes.sizes import Size
 from tilenca.shapes.stretch import Rows
 
 MOST_PIXELS = 40_000_000
+# Pillow's exceptions, besides its own, on a picture with damaged bytes.
+DAMAGED = (
+    SyntaxError,
+    ValueError,
+    TypeError,
+    LookupError,
+    ArithmeticError,
+    EOFError,
+    struct.error,
+    zlib.error,
+)
 
 
 def read_image(path: Path) -> NDArray[np.float64]:
@@ -38,7 +51,7 @@ def read_image(path: Path) -> NDArray[np.float64]:
             flat = Image.new("RGBA", image.size, "white")
             flat.alpha_composite(image.convert("RGBA"))
             grey = np.asarray(flat.convert("L"), np.float64) / 255
-    except (UnidentifiedImageError, Image.DecompressionBombError) as error:
+    except (UnidentifiedImageError, Image.DecompressionBombError, *DAMAGED) as error:
         raise UsageError(f"{path}: not a picture that can be read; save it as PNG") from error
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror or error}; give a picture, such as a PNG") from error

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tilenca.base.errors import TilencaError
+from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.evaluation.card import render_card
 from tilenca.model.file import Model
@@ -57,8 +58,8 @@ def keep(directory: Path, result: Result) -> Path:
 def _better(directory: Path, result: Result) -> float | None:
     """The shortfall of the model of the same drawings that lies there, if it is smaller."""
     try:
-        shortfall = float(json.loads((directory / "metrics.json").read_text(encoding="utf-8"))["shortfall"])
-        old = json.loads((directory / "model.json").read_text(encoding="utf-8"))
+        shortfall = float(read_json((directory / "metrics.json").read_text(encoding="utf-8"))["shortfall"])
+        old = read_json((directory / "model.json").read_text(encoding="utf-8"))
         same = (
             tuple(old["labels"]) == result.model.labels
             and old.get("metadata", old.get("made"))["sources"] == result.model.metadata["sources"]

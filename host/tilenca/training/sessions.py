@@ -15,6 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from tilenca.base.errors import TilencaError
+from tilenca.base.parsing import read_json
 from tilenca.base.whole_file import write_whole
 
 FILE = "sessions.json"
@@ -85,7 +86,7 @@ def _started(pid: int) -> str | None:
 def sessions_of(folder: Path) -> list[Session]:
     """The sessions of a model's folder, the first one first; none where nothing is noted or can be read."""
     with suppress(OSError, ValueError, TypeError):
-        return [Session(**one) for one in json.loads((folder / FILE).read_text(encoding="utf-8"))]
+        return [Session(**one) for one in read_json((folder / FILE).read_text(encoding="utf-8"))]
     return []
 
 

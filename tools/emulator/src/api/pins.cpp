@@ -27,6 +27,7 @@ int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsig
     return attempted([&] {
         auto& chip = tile_of(array, tile).chip();
         const tilenca::avr::PinId pin = pin_of(port, bit);
+        check_range("a cycle", cycle, uint64_t{0}, tilenca::avr::kLastCycle);
         tilenca::avr::Line* line = chip.gpio().line(pin);
         if (line == nullptr) {
             line = &chip.gpio().attach_line(pin, tilenca::avr::Drive::High);

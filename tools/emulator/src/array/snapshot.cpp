@@ -1,7 +1,9 @@
 // Saving and loading a whole array.
 #include "array/array.h"
 
+#include <cmath>
 #include <cstring>
+#include <map>
 
 namespace tilenca {
 
@@ -18,6 +20,24 @@ uint32_t hash_of(const uint8_t* bytes, size_t count, uint32_t hash = 2166136261u
     return hash;
 }
 
+using Ends = std::vector<std::pair<Array::End, Array::End>>;
+
+// A cable joins two tiles, in both directions; a side has one at most.
+void check_cables(const Ends& ends) {
+    const auto key = [](const Array::End& end) { return end.tile * kSides + end.side; };
+    std::map<unsigned, unsigned> leads;
+    for (const auto& [from, to] : ends) {
+        if (from.tile == to.tile || !leads.emplace(key(from), key(to)).second) {
+            throw avr::ArchiveError("a side has two cables, or one that leads back");
+        }
+    }
+    for (const auto& [from, to] : leads) {
+        if (const auto back = leads.find(to); back == leads.end() || back->second != from) {
+            throw avr::ArchiveError("a cable has one direction only");
+        }
+    }
+}
+
 } // namespace
 
 // A snapshot means nothing to another image.
@@ -30,6 +50,7 @@ uint32_t Array::image_number() const {
 }
 
 std::vector<uint8_t> Array::save() {
+    catch_up(); // a tile that was added since has not run yet
     avr::Archive archive;
     uint32_t magic = kMagic, version = kVersion, image = image_number(), tiles = size(),
              wires = static_cast<uint32_t>(wires_.size());
@@ -70,8 +91,8 @@ void Array::load(const uint8_t* bytes, size_t count) {
     if (image != image_number()) {
         throw avr::ArchiveError("a snapshot of tiles that run another image");
     }
-    if (tiles > kMostTiles || wires > 2 * kSides * tiles) {
-        throw avr::ArchiveError("it has more tiles or cables than can be");
+    if (tiles == 0 || tiles > kMostTiles || tiles > count / avr::kDataBytes || wires > kSides * tiles) {
+        throw avr::ArchiveError("it has more tiles or cables than can be, or none");
     }
     std::vector<std::pair<End, End>> ends;
     for (uint32_t i = 0; i < wires; i++) {
@@ -82,6 +103,7 @@ void Array::load(const uint8_t* bytes, size_t count) {
         }
         ends.emplace_back(from, to);
     }
+    check_cables(ends);
     wires_.clear();
     while (size() > tiles) {
         tiles_.pop_back();
@@ -98,10 +120,18 @@ void Array::load(const uint8_t* bytes, size_t count) {
     if (!(delay >= kLeastDelayTicks && delay <= kMostDelayTicks)) {
         throw avr::ArchiveError("its cables take longer than any can");
     }
+    if (!(now_ >= 0 && asked_for_ <= now_ && now_ - asked_for_ < kQuantumTicks &&
+          std::fmod(now_, kQuantumTicks) == 0)) {
+        throw avr::ArchiveError("its time is none that an array comes to");
+    }
     common_.delay = delay;
     turn_ = turn_of(common_.delay);
     for (const auto& one : tiles_) {
         archive(*one);
+        const avr::Cpu& cpu = one->chip().cpu();
+        if (cpu.fault.empty() && !one->clock().has_come_to(now_, cpu.cycle)) {
+            throw avr::ArchiveError("a tile is at another time than the others");
+        }
     }
     for (const auto& wire : wires_) {
         archive(*wire);

@@ -176,6 +176,12 @@ void Wire::state(avr::Archive& archive) {
     archive(sent_[list].edges, sent_[1 - list].edges, connected_, fault_.loss, fault_.flip, fault_.delay,
             fault_.baud, random_, counts_.bytes, counts_.lost, counts_.flipped, raw, raw_drive_, out_drive_,
             muted_, flipping_, flips_, start_, bit_, border_, others_bit_[list], others_bit_[1 - list]);
+    archive.require(border_ <= kLastBorder && (border_ == kNoByte || bit_ > 0),
+                    "a cable carries no byte that is");
+    archive.require(fault_.loss >= 0 && fault_.loss <= 1 && fault_.flip >= 0 && fault_.flip <= 1 &&
+                        fault_.delay >= 0 && fault_.delay <= kTicksPerSecond && fault_.baud >= 0 &&
+                        others_bit_[0] >= 0 && others_bit_[1] >= 0,
+                    "a cable has a fault that none can have");
     raw_.assign(raw.begin(), raw.end());
 }
 

@@ -203,6 +203,9 @@ void Adc::clock_starts(uint64_t, uint64_t stood) {
 void Adc::state(Archive& archive) {
     archive(inputs_, supply_v_, noise_, random_, warm_, by_trigger_, is_difference_, held_, sampled_, result_,
             origin_);
+    archive.require(noise_ >= 0 && noise_ <= 1024 && supply_v_ >= 1.8 && supply_v_ <= 5.5 &&
+                        std::abs(sampled_) <= 1e6 && result_ <= 1023,
+                    "it converts what cannot be");
 }
 
 } // namespace tilenca::avr

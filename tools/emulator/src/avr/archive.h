@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -42,7 +43,21 @@ class Archive {
         position_ += count;
     }
 
-    // Numbers and flags only: a struct's padding would make equal states differ.
+    // What was loaded must be so: a snapshot can be made by hand, and a chip relies on what it knows of
+    // itself.
+    void require(bool holds, const char* fact) const {
+        if (loading_ && !holds) {
+            throw ArchiveError(fact);
+        }
+    }
+    // The same for a number that lies between two others, which belong to the range.
+    template <class T>
+    void require_range(T value, T least, T greatest, const char* fact) const {
+        require(value >= least && value <= greatest, fact);
+    }
+
+    // Numbers and flags only: a struct's padding would make equal states differ. An enumeration says its last
+    // value by last_of(), so that no other is loaded.
     template <class T>
     std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>> one(T& value) {
         if constexpr (std::is_same_v<T, bool>) {
@@ -51,6 +66,11 @@ class Archive {
             value = byte != 0;
         } else {
             bytes(&value, sizeof value);
+            if constexpr (std::is_enum_v<T>) {
+                require(value <= last_of(value), "it has a value that there is not");
+            } else if constexpr (std::is_floating_point_v<T>) {
+                require(std::abs(value) <= kGreatest, "it has a number that no measure takes"); // nor NaN
+            }
         }
     }
     template <class T, size_t n>
@@ -87,6 +107,9 @@ class Archive {
     void operator()(T&... values) {
         (one(values), ...);
     }
+
+    // Of all measures: time goes on by less than a quantum there, still.
+    static constexpr double kGreatest = 1e18;
 
   private:
     std::vector<uint8_t> saved_;

@@ -279,6 +279,13 @@ void Counter::capture_now() {
 void Counter::state(Archive& archive) {
     archive(mode_.wave, mode_.top, mode_.fixed_top, count_, capture_, down_, blocked_, compares_, buffers_,
             actions_, levels_, flags);
+    uint16_t greatest = std::max(count_, mode_.fixed_top);
+    for (unsigned channel = 0; channel < channels_; channel++) {
+        greatest = std::max({greatest, compares_[channel], buffers_[channel]});
+        archive.require(actions_[channel] <= 3, "an output does what none does");
+    }
+    archive.require(greatest <= max_ && (max_ > 0xFF || mode_.top != Top::Capture),
+                    "a timer counts further than it can");
     free_ticks_ = 0;
 }
 

@@ -15,6 +15,12 @@ constexpr uint8_t kFlagOverflow = 1, kFlagCompareA = 2, kFlagCapture = 0x20;
 
 enum class Wave : uint8_t { Normal, Ctc, Fast, PhaseCorrect, PhaseAndFrequencyCorrect };
 enum class Top : uint8_t { Fixed, CompareA, Capture };
+constexpr Wave last_of(Wave) {
+    return Wave::PhaseAndFrequencyCorrect;
+}
+constexpr Top last_of(Top) {
+    return Top::Capture;
+}
 
 struct WaveMode {
     Wave wave = Wave::Normal;

@@ -1,6 +1,7 @@
 #include "avr/cpu.h"
 
 #include "avr/ops.h"
+#include "avr/vectors.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,8 +10,10 @@ namespace tilenca::avr {
 
 namespace {
 
-constexpr uint64_t kInterruptCycles = 5; // with three bytes of return address
-constexpr uint64_t kWakeCycles = 5;      // more, when the interrupt ends a sleep
+constexpr uint64_t kInterruptCycles = 5;   // with three bytes of return address
+constexpr uint64_t kWakeCycles = 5;        // more, when the interrupt ends a sleep
+constexpr uint64_t kLongestWait = 1 << 20; // of the start of a crystal, or of an access that stalls the core
+constexpr uint32_t kMostDivisor = 256;
 
 } // namespace
 
@@ -190,10 +193,17 @@ void Cpu::state(Archive& archive) {
     archive(word, cycle, carry, zero, nvh, requests, held_until, sleep_cycles, stall_cycles, vector_base);
     archive(interrupts_on, transfer, asleep, deeply, sleep_enabled, wake_cycles, instructions, fault);
     archive(stack_low, stack_floor, stack_deepest, stack_is_elsewhere, clock_divisor);
+    archive.require(word <= kFlashWords + 1 && vector_base <= kFlashWords - 2 * kVectors &&
+                        stack_low <= kDataBytes,
+                    "it leads outside the memory");
+    archive.require(requests >> kVectors == 0, "it asks for an interrupt that there is not");
+    archive.require_range<uint64_t>(cycle, 0, kLastCycle, "its clock is beyond its end");
+    archive.require(sleep_cycles <= cycle && std::max<uint64_t>(wake_cycles, stall_cycles) <= kLongestWait,
+                    "it waits longer than a chip does");
+    archive.require(clock_divisor != 0 && clock_divisor <= kMostDivisor &&
+                        (clock_divisor & (clock_divisor - 1)) == 0,
+                    "its clock is divided by what there is not");
     if (archive.loading()) {
-        if (word > kFlashWords + 1 || stack_low > kDataBytes) {
-            throw ArchiveError("it leads outside the memory");
-        }
         at = program + word;
         set_stack_low(stack_low);
         trap_hit = halted = false;

@@ -17,6 +17,7 @@ constexpr uint16_t kSramStart = 0x200;
 constexpr uint16_t kSramBytes = 0x2000;
 constexpr uint16_t kDataBytes = kSramStart + kSramBytes;
 constexpr uint64_t kNever = ~uint64_t{0};
+constexpr uint64_t kLastCycle = uint64_t{1} << 62; // a chip that runs for ever does not reach it
 // I/O addresses whose access goes through the bus.
 constexpr uint8_t kReadsThroughBus = 1, kWritesThroughBus = 2;
 

@@ -20,7 +20,11 @@ struct FrameFormat {
     // The bits on the wire, first sent lowest.
     uint16_t encode(uint16_t data) const;
     bool parity_of(uint16_t data) const;
-    void state(Archive& archive) { archive(data_bits, parity, stop_bits); }
+    void state(Archive& archive) {
+        archive(data_bits, parity, stop_bits);
+        archive.require(data_bits >= 5 && data_bits <= 9 && parity <= 3 && stop_bits >= 1 && stop_bits <= 2,
+                        "its frames have a form that there is not");
+    }
 };
 
 struct Sampling {
@@ -32,7 +36,12 @@ struct Sampling {
     double decided(unsigned index) const {
         return start + period * (index * samples_per_bit + samples_per_bit / 2 + 1);
     }
-    void state(Archive& archive) { archive(start, period, samples_per_bit); }
+    void state(Archive& archive) {
+        archive(start, period, samples_per_bit);
+        archive.require(start >= 0 && period > 0 && period <= 4096 &&
+                            (samples_per_bit == 8 || samples_per_bit == 16),
+                        "it samples as no receiver does");
+    }
 };
 
 struct ReceivedFrame {

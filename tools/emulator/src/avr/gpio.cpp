@@ -242,6 +242,7 @@ void Gpio::state(Archive& archive) {
         archive(port.written, port.ddr_before, port.latch_before, port.levels, port.driven, port.held,
                 port.taken, port.silent, port.interrupting, port.watched, port.heard, port.watched_in,
                 port.has_lines, port.inputs_off, port.fell);
+        archive.require((port.watched_in & ~port.has_lines) == 0, "a pin is watched that has no wire");
         for (unsigned bit = 0; bit < 8; bit++) {
             if ((port.has_lines >> bit & 1) != 0) {
                 if (port.lines[bit] == nullptr) {

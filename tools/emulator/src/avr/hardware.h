@@ -14,7 +14,10 @@ struct Hardware {
     bool start_up = false;        // a reset takes the time that the fuses say; otherwise none
     double watchdog_error = 0;    // its clock is off by a share of at most so much (0..1)
 
-    void state(Archive& archive) { archive(seed, floating_inputs, sram_noise, start_up, watchdog_error); }
+    void state(Archive& archive) {
+        archive(seed, floating_inputs, sram_noise, start_up, watchdog_error);
+        archive.require_range(watchdog_error, 0.0, 0.5, "its watchdog is none");
+    }
 };
 
 } // namespace tilenca::avr

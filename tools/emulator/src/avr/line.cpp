@@ -96,6 +96,11 @@ void Line::state(Archive& archive) {
     changes_.erase(changes_.begin(), changes_.begin() + static_cast<std::ptrdiff_t>(first_));
     first_ = 0;
     archive(changes_, before_, pull_up_, held_, released_);
+    for (size_t i = 0; i < changes_.size(); i++) {
+        archive.require(changes_[i].cycle <= kLastCycle &&
+                            (i == 0 || changes_[i - 1].cycle < changes_[i].cycle),
+                        "a wire changes out of turn");
+    }
 }
 
 } // namespace tilenca::avr

@@ -23,6 +23,9 @@ constexpr uint8_t port_index(char letter) {
 // Open: nobody drives the wire, so a pull-up lifts it, and without one it floats. Middle: something holds it
 // between the two levels, where a pull-up is too weak: it reads as noise.
 enum class Drive : uint8_t { Low, High, Open, Middle };
+constexpr Drive last_of(Drive) {
+    return Drive::Middle;
+}
 
 constexpr Drive drive_of(bool level) {
     return level ? Drive::High : Drive::Low;

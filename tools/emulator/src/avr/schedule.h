@@ -79,6 +79,7 @@ class Schedule {
     }
     void state(Archive& archive) {
         archive(due_, stopped_);
+        archive.require(stopped_ >> kSlots == 0, "it has more events than there are");
         set_ = 0;
         for (size_t i = 0; i < kSlots; i++) {
             set_ |= uint32_t{due_[i] != kNever} << i;

@@ -166,6 +166,12 @@ void Timer::clock_starts(uint64_t cycle, uint64_t) {
 void Timer::state(Archive& archive) {
     archive(counter_, driving_, temp_, divisor_, synced_, external_clock_, comparator_captures_, capture_due_,
             told_flags_);
+    archive.require(
+        divisor_ <= 1024 && (divisor_ & (divisor_ - 1)) == 0 &&
+            (external_clock_ == 0 || (!has_own_prescaler() && external_clock_ >= 6 && external_clock_ <= 7)),
+        "a timer has a clock that there is not");
+    archive.require(synced_ <= core_.cpu.cycle, "a timer is ahead of time");
+    archive.require(channels() == 3 || !driving_[2], "a timer drives a pin that it has not");
     if (archive.loading()) {
         set_divisor(divisor_);
         for (unsigned i = 0; i < channels(); i++) {

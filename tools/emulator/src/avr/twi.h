@@ -18,6 +18,7 @@ class Twi : public Peripheral {
 
   private:
     enum class Phase : uint8_t { Idle, Started, Writing, Reading };
+    friend constexpr Phase last_of(Phase) { return Phase::Reading; }
 
     void clock_stops(uint64_t cycle) override;
     void clock_starts(uint64_t cycle, uint64_t stood) override;

@@ -240,9 +240,11 @@ void Usart::clock_starts(uint64_t cycle, uint64_t stood) {
 void Usart::state(Archive& archive) {
     archive(baud_origin_, sending_, sent_flag_, buffer_full_, buffer_, receiver_, sampling_, receive_format_,
             fifo_, waiting_, lost_, last_data_, start_is_noise_);
-    if (archive.loading() && waiting_ > fifo_.size()) {
-        throw ArchiveError("a receiver holds more than it can");
-    }
+    archive.require(waiting_ <= fifo_.size(), "a receiver holds more than it can");
+    const bool is_busy = receiver_ == Receiver::Starting || receiver_ == Receiver::Receiving;
+    archive.require(is_busy ? gpio_.line(receive_pin_) != nullptr
+                            : core_.schedule.due(receive_slot_) == kNever,
+                    "a receiver awaits what cannot come");
 }
 
 } // namespace tilenca::avr

@@ -33,6 +33,7 @@ class Usart final : public Peripheral {
 
   private:
     enum class Receiver : uint8_t { Off, Idle, Starting, Receiving };
+    friend constexpr Receiver last_of(Receiver) { return Receiver::Receiving; }
 
     struct Received {
         uint16_t data = 0;

@@ -17,7 +17,10 @@ class Watchdog : public Peripheral {
     std::vector<uint8_t> vectors() const override;
     void interrupt_taken(uint8_t vector) override;
     void reset(uint64_t cycle) override;
-    void state(Archive& archive) override { archive(changeable_until_, wants_reset_, error_); }
+    void state(Archive& archive) override {
+        archive(changeable_until_, wants_reset_, error_);
+        archive.require(std::abs(error_) <= 0.5 && !wants_reset_, "its watchdog is none");
+    }
 
     // Its clock runs faster by that share, or slower.
     void set_error(double error) { error_ = error; }

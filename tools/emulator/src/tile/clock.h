@@ -11,6 +11,8 @@ namespace tilenca {
 constexpr double kTicksPerSecond = 16e6;
 // A drifting clock changes its rate in steps, at multiples of this.
 constexpr double kDriftTicks = 1 << 20;
+// Cycles of a chip at the end of a turn: one that was halted in it is behind. One that starts is ahead.
+constexpr double kMostBehind = 1 << 14;
 
 class Clock {
   public:
@@ -62,6 +64,15 @@ class Clock {
     }
     void state(avr::Archive& archive) {
         archive(error_, drift_, skew_, anchor_ticks_, anchor_cycles_, rate_, divisor_, drift_steps_);
+        archive.require(divisor_ != 0 && rate_ > 0 && rate_ == (1 + error()) / divisor_ &&
+                            anchor_cycles_ >= 0,
+                        "a clock runs as none does");
+    }
+    // Whether a clock that has been loaded can have come to a time, and a chip with it to a cycle.
+    bool has_come_to(double ticks, uint64_t cycle) const {
+        const double now = static_cast<double>(to_cycle(ticks)), there = static_cast<double>(cycle);
+        const double steps = std::floor(ticks / kDriftTicks);
+        return now - there <= kMostBehind && (!drifts() || std::abs(steps - drift_steps_) <= 1);
     }
 
   private:

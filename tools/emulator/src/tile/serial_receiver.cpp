@@ -9,6 +9,7 @@ constexpr unsigned kSamplesPerBit = 16;
 // What terminal programs offer; a tile's divisor comes close to one of these, seldom to the point.
 constexpr double kUsualBauds[] = {300,   600,   1200,  2400,   4800,   9600,   14400,  19200,   28800,
                                   38400, 57600, 76800, 115200, 230400, 250000, 500000, 1000000, 2000000};
+constexpr double kLeastBaud = 0.9;      // at the greatest divisors of a USART and of its clock
 constexpr double kBaudTolerance = 0.04; // 3.7 % is the worst an Arduino does (230,400 baud)
 
 } // namespace
@@ -51,6 +52,9 @@ void SerialReceiver::receive_until(double end) {
 void SerialReceiver::state(avr::Archive& archive) {
     std::vector<Byte> bytes(received_.begin(), received_.end());
     archive(baud_, followed_bit_ticks_, line_, listening_from_, bytes);
+    archive.require(baud_ >= kLeastBaud && baud_ <= kTicksPerSecond && followed_bit_ticks_ >= 0 &&
+                        listening_from_ >= 0,
+                    "it listens as no receiver does");
     received_.assign(bytes.begin(), bytes.end());
 }
 

@@ -1,7 +1,7 @@
+// The targets of the firmware.
 #include "targets.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <array>
@@ -18,14 +18,6 @@ namespace fuzz {
 namespace {
 
 constexpr Settings kDefaults = {0, 100, 0, 255, 0};
-
-// Stops at what must not be, in every build.
-void must(bool holds, const char* what) {
-    if (!holds) {
-        fprintf(stderr, "fuzz: %s\n", what);
-        abort();
-    }
-}
 
 using Bytes = std::array<uint8_t, 2 * kSettingsSize * kBlocks>;
 
@@ -191,6 +183,10 @@ void settings(const uint8_t* bytes, size_t size) {
     must(is_old || is_new || board.damaged[static_cast<uint8_t>(kind)], "neither old nor new");
     must(!whole || is_new, "not what was written");
     must(marking ? after.tile_id == found.tile_id : after.serial == found.serial, "the other block changed");
+}
+
+const char* names() {
+    return "frames, commands or settings";
 }
 
 Target target_of(const char* name) {
