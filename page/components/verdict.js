@@ -1,7 +1,7 @@
 // One sentence: what the tiles think together.
 
 /** @import { Tiles } from "../stream/tiles.js" */
-import { known } from "../stream/address.js";
+import { known } from "../stream/drawing.js";
 import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
@@ -27,7 +27,7 @@ export function verdictOn(tiles) {
   if (tiles.source === "failed") return { text: `The firmware of ${tiles.model} was not built`, label: "", agreed: false };
   if (total === 0) {
     if (tiles.kind === "watched") return { text: laid.length ? "No tile is heard" : "No tile yet", label: "", agreed: false };
-    const text = laid.length ? "No tile has power" : "The board is empty: click a place to put a tile";
+    const text = laid.length ? "No tile has power" : "The board is empty";
     const boot = laid.length > 0 && tiles.history.changes.length === 0;
     return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
   }

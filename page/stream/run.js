@@ -3,7 +3,8 @@
 /** @import { Command } from "./source.js" */
 /** @import { Start } from "./address.js" */
 /** @import { Tiles } from "./tiles.js" */
-import { known, readAddress, writeAddress } from "./address.js";
+import { readAddress, writeAddress } from "./address.js";
+import { known } from "./drawing.js";
 import { MOST_DEEDS, MOST_TEXT } from "./deeds.js";
 import { faultsNow, kindsChangedBy, lossOf } from "./faults.js";
 
