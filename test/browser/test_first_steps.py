@@ -1,0 +1,83 @@
+"""What somebody does who was told nothing: pull a tile out, draw a shape, share it, replay a file."""
+
+import json
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser
+
+from support.browser import Visit, new_visit
+from support.page_server import PageServer
+
+MOST_REQUESTS = 8  # document, four style sheets, program, icon, stream
+DROP = """([name, text]) => {
+  const files = new DataTransfer();
+  files.items.add(new File([text], name));
+  const drop = new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true });
+  document.getElementById("board").dispatchEvent(drop);
+  return drop.defaultPrevented;
+}"""
+
+
+def test_few_requests_come_before_the_first_tile(visit: Visit, server: PageServer) -> None:
+    visit.page.goto(f"{server.url}?spread=0")
+    visit.page.locator(".tile").first.wait_for()
+    assert len(visit.requests) <= MOST_REQUESTS, visit.requests
+
+
+def test_each_tool_says_what_it_does_until_it_was_used(visit: Visit, server: PageServer) -> None:
+    visit.page.goto(f"{server.url}?speed=1&spread=0.1")
+    hint = visit.page.locator("#hint")
+    hint.get_by_text("Drag a tile off the board").wait_for()
+    visit.wait_for_verdict("All 16 tiles show 8")
+    assert Axe().run(visit.page).violations_count == 0
+    visit.pull("tile-11")
+    hint.wait_for(state="hidden")
+    visit.wait_for_verdict("All 15 tiles show 9")
+    visit.page.get_by_role("button", name="Knife").click()
+    hint.get_by_text("cut them; click one to mend").wait_for()
+    visit.page.locator("[data-port=tile-12]").focus()
+    visit.page.keyboard.press("Shift+ArrowUp")
+    hint.wait_for(state="hidden")
+    visit.page.get_by_role("button", name="Hand").click()
+    hint.wait_for(state="hidden")
+
+
+@pytest.mark.parametrize("size", ["phone", "laptop"])
+def test_a_shape_of_ones_own_is_drawn_on_an_empty_board(
+    browser: Browser, server: PageServer, size: str
+) -> None:
+    with new_visit(browser, size) as visit:
+        page = visit.page
+        page.goto(f"{server.url}?speed=1&spread=0.1")
+        visit.wait_for_verdict("All 16 tiles show 8")
+        page.get_by_role("button", name="Draw your own").click()
+        visit.wait_for_verdict("The board is empty")
+        assert page.get_by_role("button", name="Draw", exact=True).get_attribute("aria-pressed") == "true"
+        page.locator("#board").scroll_into_view_if_needed()
+        corners = [visit.middle(f".spot[data-place='{row},{col}']") for row, col in ((0, 0), (0, 3), (4, 3))]
+        visit.drag(corners[0], corners[1])
+        visit.wait_until("document.querySelectorAll('.tile').length === 4")
+        assert visit.middle(".spot[data-place='4,3']") == corners[2]  # what was in reach has stayed there
+        visit.drag(visit.middle(".spot[data-place='1,3']"), corners[2])
+        visit.wait_for_verdict("All 8 tiles show 7")
+        visit.wait_until("location.search.includes('draw=1111-0001-0001-0001-0001')")
+        assert visit.complaints == []
+
+
+def test_a_recording_is_replayed_where_it_is_dropped(visit: Visit, server: PageServer) -> None:
+    page = visit.page
+    page.goto(f"{server.url}?speed=1&spread=0.1")
+    visit.wait_for_verdict("All 16 tiles show 8")
+    assert page.evaluate(DROP, ["holiday.txt", "Dear diary"])
+    page.locator("#notice", has_text="holiday.txt: line 1 is no event").wait_for()
+    visit.wait_for_verdict("All 16 tiles show 8")
+    lines = [
+        {"time": 0, "stream": 1, "source": "emulated", "looks": [], "drawings": []},
+        {"time": 0, "run": {"seed": 1, "shape": "-", "tiles": 1}},
+        {"time": 0, "port": "tile-01", "place": [0, 0], "tile": 1},
+        {"time": 0.5, "port": "tile-01", "open": True},
+    ]
+    assert page.evaluate(DROP, ["run.jsonl", "\n".join(map(json.dumps, lines)) + "\n"])
+    page.locator("#notice", has_text="A recording: go to any time of it").wait_for()
+    visit.wait_until("document.querySelectorAll('.tile').length === 1")
