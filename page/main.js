@@ -211,7 +211,7 @@ function show(events) {
     notice.say(tiles.refused);
     lastRefused = tiles.refused;
     tiles.refused = "";
-    if (tiles.runs === 0) run.withoutFaults();
+    if (tiles.runs === 0) run.withoutRefused();
   }
   lesson.update();
   lens.update();

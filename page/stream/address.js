@@ -10,6 +10,8 @@ import { cellsOf, known, rowsOf } from "./drawing.js";
  */
 
 export const DEFAULT_SPEED = 0.1;
+// Twin of the least that a command takes (host/tilenca/protocol/stream_commands.py), but for 0.
+const LEAST_SPEED = 1e-5;
 export const DEFAULT_SPREAD_S = 0.25;
 const FIRST_DRAWING = "8";
 
@@ -35,7 +37,7 @@ export function readAddress(query, drawings) {
   return {
     cells: drawn.length ? drawn : cellsOf(shape?.rows ?? ["#"]),
     seed: Math.floor(numberIn(given.get("seed"), 0, Number.MAX_SAFE_INTEGER, 0)),
-    speed: numberIn(given.get("speed"), 0, 1024, DEFAULT_SPEED),
+    speed: Number(given.get("speed") || NaN) === 0 ? 0 : numberIn(given.get("speed"), LEAST_SPEED, 1024, DEFAULT_SPEED),
     faults: given.getAll("fault").slice(0, 32),
     spread: numberIn(given.get("spread"), 0, 3600, DEFAULT_SPREAD_S),
     until: Number.isNaN(until) ? null : until,

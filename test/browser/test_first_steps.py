@@ -65,6 +65,32 @@ def test_a_shape_of_ones_own_is_drawn_on_an_empty_board(
         assert visit.complaints == []
 
 
+@pytest.mark.parametrize(
+    ("query", "said", "verdict"),
+    [
+        ("deed=0.1,move,1,NaN,3&shape=digits/4", "row must be a whole number", "All 10 tiles show 4"),
+        ("fault=loss=2&shape=digits/4", "loss is 0 to 1", "All 10 tiles show 4"),
+        (f"draw={'-'.join(['1' * 60] * 60)}", "a command has at most", "All 16 tiles show 8"),
+        (f"draw={'-'.join(['1' * 20] * 20)}", "at most", "All 16 tiles show 8"),
+    ],
+)
+def test_an_address_that_cannot_be_says_so_and_something_runs(
+    visit: Visit, server: PageServer, query: str, said: str, verdict: str
+) -> None:
+    visit.page.goto(f"{server.url}?{query}&speed=1&spread=0.1")
+    visit.page.locator("#notice", has_text=said).wait_for()
+    visit.wait_until("location.search.includes('speed=0.1') || location.search.includes('digits/4')")
+    visit.page.get_by_label("Speed").fill("5")
+    visit.wait_for_verdict(verdict)
+
+
+def test_a_speed_that_cannot_be_is_the_usual_one(visit: Visit, server: PageServer) -> None:
+    for speed in ("1e-9", "-1", "Infinity", "x", ""):
+        visit.page.goto(f"{server.url}?shape=digits/1&spread=0&speed={speed}")
+        visit.page.locator(".tile").first.wait_for()
+        visit.wait_until("location.search.includes('speed=0.1&')")
+
+
 def test_a_recording_is_replayed_where_it_is_dropped(visit: Visit, server: PageServer) -> None:
     page = visit.page
     page.goto(f"{server.url}?speed=1&spread=0.1")
