@@ -6,12 +6,12 @@ import { setText } from "./dom.js";
 
 /** @type {Record<Tool, string>} */
 const WORDS = {
-  hand: "Drag a tile off the board, or click a free place",
-  group: "Drag a tile: all that hang together come along",
-  pencil: "Drag over free places, or over tiles to rub out",
-  knife: "Drag across cables to cut them; click one to mend",
+  hand: "Drag a tile off the board",
+  group: "Drag all that hangs together",
+  pencil: "Drag to put tiles in, or to rub out",
+  knife: "Drag across cables; click one to mend",
 };
-const EMPTY = "Click free places, or choose Draw and drag over them";
+const EMPTY = "Click free places, or choose Draw";
 const DEEDS = ["put", "pull", "move", "shift", "cut"];
 
 export class Hint {

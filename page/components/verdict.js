@@ -6,6 +6,7 @@ import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
 const SETTLED_MS = 1200;
+const LONG = 24; // characters; more have to be smaller, so that they stand in one line
 
 /** @param {string} label */
 const named = (label) => (label === "-" ? "a dash" : label);
@@ -62,6 +63,7 @@ export class Verdict {
       this.text = text;
       setText(this.line, text);
       this.line.classList.toggle("agreed", agreed);
+      this.line.classList.toggle("long", text.length > LONG);
     }
     if (this.text !== this.said && now - this.since > SETTLED_MS) {
       this.said = this.text;

@@ -4,6 +4,7 @@
 
 // Around the tiles: room to put one.
 const MARGIN = 0.62;
+const MARGIN_PX = 36; // and for a line of text
 const LARGEST = 132;
 const SMALLEST = 26;
 // In view where no tile lies: room for a digit.
@@ -33,6 +34,7 @@ export class View {
     this.cols = places.length ? Math.max(...cols) - this.left + 1 : EMPTY_COLS;
     const fitting = Math.min(
       width / (Math.max(this.cols, 3) + 2 * MARGIN), height / (Math.max(this.rows, 3) + 2 * MARGIN),
+      (height - 2 * MARGIN_PX) / Math.max(this.rows, 3),
     );
     this.size = Math.floor(Math.max(SMALLEST, Math.min(LARGEST, fitting)));
     this.x = Math.round((width - this.cols * this.size) / 2);

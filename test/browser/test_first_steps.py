@@ -35,7 +35,7 @@ def test_each_tool_says_what_it_does_until_it_was_used(visit: Visit, server: Pag
     hint.wait_for(state="hidden")
     visit.wait_for_verdict("All 15 tiles show 9")
     visit.page.get_by_role("button", name="Knife").click()
-    hint.get_by_text("cut them; click one to mend").wait_for()
+    hint.get_by_text("Drag across cables; click one to mend").wait_for()
     visit.page.locator("[data-port=tile-12]").focus()
     visit.page.keyboard.press("Shift+ArrowUp")
     hint.wait_for(state="hidden")
@@ -107,3 +107,25 @@ def test_a_recording_is_replayed_where_it_is_dropped(visit: Visit, server: PageS
     assert page.evaluate(DROP, ["run.jsonl", "\n".join(map(json.dumps, lines)) + "\n"])
     page.locator("#notice", has_text="A recording: go to any time of it").wait_for()
     visit.wait_until("document.querySelectorAll('.tile').length === 1")
+
+
+NARROW = """() => {
+  const box = (one) => one.getBoundingClientRect();
+  const tiles = [...document.querySelectorAll(".tile svg")].map(box);
+  const { scrollWidth, clientWidth } = document.documentElement;
+  return {
+    wide: scrollWidth - clientWidth,
+    covered: box(document.getElementById("hint")).bottom > Math.min(...tiles.map(({ top }) => top)),
+  };
+}"""
+
+
+@pytest.mark.parametrize(("width", "height"), [(320, 568), (844, 390), (1280, 500)])
+def test_a_small_window_scrolls_one_way_and_no_hint_lies_on_a_tile(
+    visit: Visit, server: PageServer, width: int, height: int
+) -> None:
+    visit.page.set_viewport_size({"width": width, "height": height})
+    visit.page.goto(f"{server.url}?speed=1&spread=0.1")
+    visit.page.locator("#hint").wait_for()
+    visit.page.locator(".tile").first.wait_for()
+    assert visit.page.evaluate(NARROW) == {"wide": 0, "covered": False}
