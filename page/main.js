@@ -9,6 +9,7 @@ import { byId } from "./components/dom.js";
 import { obeyParent, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
+import { Hint } from "./components/hint.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
 import { LensPanel } from "./components/lens.js";
@@ -19,7 +20,8 @@ import { Share } from "./components/share.js";
 import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
-import { cellsOf, readAddress } from "./stream/address.js";
+import { readAddress } from "./stream/address.js";
+import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
 import { openOwnRecording, openRecording } from "./stream/recording.js";
@@ -41,6 +43,7 @@ function send(command) {
     return;
   }
   run.note(command);
+  hint.note(command.do);
   source.send(command);
 }
 
@@ -86,8 +89,8 @@ const deeds = {
   set: (name, value, port) => send({ do: "set", name, value, port }),
   /** @param {import("./components/hands.js").Tool} tool */
   tool(tool) {
-    board.hands.tool = tool;
-    byId("board").dataset.tool = tool;
+    board.choose(tool);
+    hint.choose(tool);
   },
   /** @param {number} speed @param {boolean} paused */
   pace: (speed, paused) => send({ do: "pace", speed, paused }),
@@ -112,6 +115,7 @@ const deeds = {
 };
 
 const notice = new Notice(byId("notice"));
+const hint = new Hint(byId("hint"), tiles);
 const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
@@ -128,7 +132,7 @@ new Share(byId("top-deeds"), tiles, recorder, {
   replay: (events, isCut) => usb.release(() => {
     source.close();
     const cut = isCut ? " Its last line was cut off; it ends before that." : "";
-    notice.say(`A recording: go to any time of it. Reload the page for running tiles.${cut}`);
+    notice.say(`A recording: go to any time of it.${cut}`);
     source = openRecording(events, listener);
   }),
 });
@@ -137,7 +141,7 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
   open: (cells, speed) => run.open({ ...readAddress("", tiles.drawings), cells, speed }),
   selected: () => board.selected,
 });
-const drawings = new Drawings(byId("drawings"), (drawing) => slideUnder(drawing), chooseModel);
+const drawings = new Drawings(byId("drawings"), { slide: slideUnder, clear: drawOwn, model: chooseModel });
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 const lens = new LensPanel(byId("lens"), byId("scale"), tiles, (one) => board.look(one));
 const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
@@ -159,6 +163,17 @@ function slideUnder(drawing) {
   const row = view.top + Math.round((view.rows - drawing.rows.length) / 2);
   const col = view.left + Math.round((view.cols - drawing.rows[0].length) / 2);
   send({ do: "arrange", cells: cellsOf(drawing.rows).map(([r, c]) => [r + row, c + col]) });
+}
+
+/** An empty board, and the tool to draw on it. */
+function drawOwn() {
+  deeds.select(null);
+  const [first] = tiles.laid();
+  if (first) {
+    send({ do: "arrange", cells: [first.place] });
+    send({ do: "pull", port: first.port });
+  }
+  bar.choose("pencil");
 }
 
 /** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
@@ -196,11 +211,12 @@ function show(events) {
     notice.say(tiles.refused);
     lastRefused = tiles.refused;
     tiles.refused = "";
-    if (tiles.runs === 0) run.withoutFaults();
+    if (tiles.runs === 0) run.withoutRefused();
   }
   lesson.update();
   lens.update();
   board.update(now);
+  hint.update();
   inspector.update();
   bar.update();
   verdict.update(tiles, now);
@@ -249,6 +265,8 @@ const openers = { server: openServer, emulator: openEmulator, recording: openOwn
 const open = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
 let source = open(listener);
 usb.offer(behind);
+byId("leave-recording").hidden = behind === "recording"; // nothing else is there
+byId("leave-recording").addEventListener("click", () => location.reload());
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => {

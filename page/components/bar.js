@@ -11,10 +11,11 @@ export const SPEEDS = [0.001, 0.01, 0.03, 0.1, 0.3, 1, 0];
 // cable. The slider reaches further only where a link says more.
 const MOST_LOSS = 10;
 
+export const PENCIL = "M4 20l1-5L16 4l4 4L9 19l-5 1M14 6l4 4";
 const ICONS = {
   hand: "M8 13V5.5a1.5 1.5 0 0 1 3 0V12m0-1V4a1.5 1.5 0 0 1 3 0v8m0-6.500a1.500 1.500 0 0 1 3 0V15a6 6 0 0 1-6 6 6 6 0 0 1-5-3l-3-5a1.500 1.500 0 0 1 2.500-1.600L8 14",
   group: "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM17 14v6M14 17h6",
-  pencil: "M4 20l1-5L16 4l4 4L9 19l-5 1M14 6l4 4",
+  pencil: PENCIL,
   knife: "M3 21l7-7M9 12L19 3c2 4 1 9-5 14z",
   play: "M8 5v14l11-7z",
   pause: "M8 5v14M16 5v14",
@@ -37,6 +38,9 @@ export function speedWords(speed) {
   if (speed === 1) return "real time";
   return speed < 1 ? `${Math.round(1 / speed)} times slower` : `${speed} times faster`;
 }
+
+/** The same, as short as the bar needs it. @param {number} speed */
+const speedText = (speed) => speedWords(speed).replace(" times ", "× ");
 
 /**
  * @typedef {{
@@ -133,7 +137,9 @@ export class Bar {
     if (document.activeElement !== this.slider) this.slider.value = String(nearest(speed));
     // A machine that cannot keep up says what share of the speed it reaches.
     const isBehind = share < 0.9 && speed > 0 && !paused;
-    setText(this.speed, isBehind ? `${speedWords(speed)} (${Math.round(share * 100)} %)` : speedWords(speed));
+    const percent = Math.round(share * 100);
+    setText(this.speed, isBehind ? `${speedText(speed)} (${percent} %)` : speedText(speed));
+    this.speed.title = isBehind ? `This machine reaches ${percent} % of that speed` : "";
     if (this.slider.getAttribute("aria-valuetext") !== speedWords(speed)) {
       this.slider.setAttribute("aria-valuetext", speedWords(speed));
     }

@@ -76,6 +76,13 @@ export class Board {
     this.selected = port;
   }
 
+  /** @param {import("./hands.js").Tool} tool */
+  choose(tool) {
+    this.hands.tool = tool;
+    this.root.dataset.tool = tool;
+    this.tiles.isMoved = true; // who draws has more room
+  }
+
   /** Looks at the tiles in another way. @param {Lens | null} lens */
   look(lens) {
     this.lens = lens;
@@ -88,7 +95,8 @@ export class Board {
     const hadFocus = this.root.contains(document.activeElement);
     const { clientWidth: width, clientHeight: height } = this.root;
     const laid = this.tiles.laid();
-    this.view.fit(laid.map((tile) => tile.place), width, height);
+    const drawn = this.hands.tool === "pencil" ? this.view.ends() : []; // what was in reach stays there
+    this.view.fit([...laid.map((tile) => tile.place), ...drawn], width, height);
     this.root.style.setProperty("--size", `${this.view.size}px`);
     this.root.classList.toggle("small", this.view.size < 62);
     this.cables.resize(width, height);

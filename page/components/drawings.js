@@ -2,9 +2,10 @@
 
 /** @import { Drawing, Model } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
-import { cellsOf } from "../stream/address.js";
+import { cellsOf } from "../stream/drawing.js";
 import { cssColour } from "../stream/led.js";
-import { element, svg } from "./dom.js";
+import { PENCIL } from "./bar.js";
+import { element, icon, svg } from "./dom.js";
 
 /** @param {Drawing} drawing @param {string} colour */
 function thumbnail(drawing, colour) {
@@ -21,13 +22,12 @@ function thumbnail(drawing, colour) {
 
 export class Drawings {
   /**
-   * @param {HTMLElement} root @param {(drawing: Drawing) => void} choose
-   * @param {(model: Model) => void} chooseModel
+   * @param {HTMLElement} root
+   * @param {{slide: (drawing: Drawing) => void, clear: () => void, model: (model: Model) => void}} deeds
    */
-  constructor(root, choose, chooseModel) {
+  constructor(root, deeds) {
     this.root = root;
-    this.choose = choose;
-    this.chooseModel = chooseModel;
+    this.deeds = deeds;
     /** @type {Map<string, HTMLButtonElement>} */
     this.buttons = new Map();
   }
@@ -38,6 +38,8 @@ export class Drawings {
     this.buttons.clear();
     const heading = element("h2", { id: "drawings-title" }, "Drawings");
     const help = element("p", { class: "summary" }, "Choose one: it slides under the running tiles.");
+    const own = element("button", { type: "button", "data-needs": "put", title: "Empties the board, and takes the pencil", onclick: () => this.deeds.clear() },
+      icon(PENCIL), "Draw your own");
     /** @type {Map<string, Drawing[]>} */
     const files = new Map();
     for (const one of drawings) {
@@ -49,7 +51,7 @@ export class Drawings {
       for (const one of members) {
         const button = element("button", {
           type: "button", "aria-pressed": "false", "aria-label": `${one.label}, ${one.name}`, title: one.name,
-          onclick: () => this.choose(one),
+          onclick: () => this.deeds.slide(one),
         });
         button.append(thumbnail(one, cssColour(tiles.look(one.label).rgb)));
         this.buttons.set(one.name, button);
@@ -57,7 +59,7 @@ export class Drawings {
       }
       return element("div", { class: "file" }, element("h3", {}, file.replaceAll("-", " ")), list);
     });
-    this.root.replaceChildren(...this.models(tiles), ...(drawings.length ? [heading, help, ...parts] : []));
+    this.root.replaceChildren(...this.models(tiles), ...(drawings.length ? [heading, help, own, ...parts] : []));
   }
 
   /** The choice of a model, where there is one. @param {Tiles} tiles */
@@ -69,7 +71,7 @@ export class Drawings {
       id: "model",
       onchange: () => {
         const chosen = models.find(({ name }) => name === select.value);
-        if (chosen) this.chooseModel(chosen);
+        if (chosen) this.deeds.model(chosen);
       },
     }, ...options);
     return [element("label", { class: "model", for: "model" }, element("span", {}, "Model"), select)];

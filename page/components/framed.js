@@ -2,7 +2,7 @@
 
 /** @import { Model } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
-import { known } from "../stream/address.js";
+import { known } from "../stream/drawing.js";
 
 /** @typedef {{models: Model[], model: string, drawings: string[], drawing: string}} Here */
 

@@ -9,6 +9,7 @@ export class Notice {
   constructor(root) {
     this.root = root;
     this.timer = 0;
+    document.addEventListener("close", () => document.body.append(root), true); // of a dialog
   }
 
   /** Says it for a while. @param {string} text */
@@ -20,6 +21,8 @@ export class Notice {
   /** Says it until `clear`. @param {string} text */
   stay(text) {
     clearTimeout(this.timer);
+    const over = document.querySelector("dialog[open]") ?? document.body; // a dialog lies over all that is not in it
+    if (this.root.parentElement !== over) over.append(this.root);
     setText(this.root, text);
     this.root.hidden = false;
   }

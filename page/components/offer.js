@@ -1,5 +1,6 @@
 // What the source cannot do is not offered: elements name the commands that they need in `data-needs`. Those with
-// `data-models` stay where one can choose a model: it is the way on while firmware is built, and where that fails.
+// `data-models` stay where one can choose a model: it is the way on while firmware is built, and where that fails. A
+// recording has models, too, and no use for another one.
 
 /** @import { Tiles } from "../stream/tiles.js" */
 
@@ -9,7 +10,8 @@ export function offerOnly(tiles) {
   document.body.dataset.kind = tiles.kind;
   for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-needs]"))) {
     const isOffered = (one.dataset.needs ?? "").split(" ").some((name) => tiles.can(name));
-    one.hidden = !isOffered && !(one.hasAttribute("data-models") && tiles.models.length > 1);
+    const isWayOn = one.hasAttribute("data-models") && tiles.models.length > 1 && tiles.source !== "recording";
+    one.hidden = !isOffered && !isWayOn;
   }
   for (const one of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-only]"))) {
     one.hidden = ![tiles.kind, tiles.source].includes(one.dataset.only ?? "");

@@ -31,7 +31,7 @@ export class Program {
       type: "search", class: "number", "aria-label": "Look for a variable", placeholder: "Look for a variable",
       oninput: () => this.showVariables(),
     });
-    this.variables = element("dl", { class: "facts variables" });
+    this.variables = element("dl", { class: "facts variables", tabindex: 0, "aria-label": "Variables" }); // it scrolls
     this.body = element("div", { class: "program-body" },
       element("div", { class: "steps-of-program" }, ...this.buttons), this.place, this.facts, this.flags, this.registers,
       element("h3", {}, "Variables"), this.filter, this.variables);

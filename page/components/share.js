@@ -61,11 +61,18 @@ export class Share {
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
       this.alone,
       this.compare,
-      row("Replay a file…", "Shows a recording instead of running tiles", () => this.file.click()),
+      row("Replay a file…", "Shows a recording instead of running tiles; or drop it on the page", () => this.file.click()),
       this.file,
     );
+    // Else the browser would leave the page for the file.
+    document.addEventListener("dragover", (event) => event.preventDefault());
+    document.addEventListener("drop", (event) => {
+      event.preventDefault();
+      const [file] = event.dataTransfer?.files ?? [];
+      if (file) this.replay(file);
+    });
     top.prepend(element(
-      "button", { type: "button", class: "compact", title: "Link, picture, recording", onclick: () => this.show() },
+      "button", { type: "button", class: "compact", title: "Link, picture, recording; compare, replay", onclick: () => this.show() },
       icon(ICON), element("span", {}, "Share"),
     ));
   }
@@ -150,7 +157,12 @@ export class Share {
   async open() {
     const [file] = this.file.files ?? [];
     if (!file) return;
+    await this.replay(file);
     this.file.value = "";
+  }
+
+  /** @param {File} file */
+  async replay(file) {
     this.dialog.close();
     try {
       const { events, isCut } = parseRecording(await file.text());

@@ -23,7 +23,7 @@ export class TileView {
     this.lit = svg("g", { class: "lit" });
     const unlit = svg("g", { class: "unlit" }, ...SEGMENTS.map((d) => svg("path", { d })));
     this.lamps = LAMPS.map(([cx, cy]) => svg("circle", { cx, cy, r: 2.6, class: "lamp" }));
-    this.id = svg("text", { x: 13, y: 17, class: "id" });
+    this.id = svg("text", { x: 11, y: 20, class: "id" });
     this.counter = svg("text", { x: 87, y: 91, class: "counter" });
     this.face = svg(
       "svg", { viewBox: "0 0 100 100", "aria-hidden": "true" },

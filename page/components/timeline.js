@@ -25,12 +25,12 @@ export class Timeline {
     this.canvas = element("canvas", { "aria-hidden": "true" });
     this.pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     this.slider = element("input", {
-      type: "range", min: 0, max: 1, value: 0, step: 1, id: "moment", "aria-label": "Time of the run",
+      type: "range", min: 0, max: 1, value: 0, step: 1, id: "moment", "aria-label": "Time of the run", title: "Any time of the run; , and . go by one update",
       oninput: () => this.go(Number(this.slider.value) / MS),
       onkeydown: (/** @type {KeyboardEvent} */ event) => this.key(event),
     });
     this.words = element("output", { for: "moment", class: "speed-words" });
-    this.root.append(element("div", { class: "track" }, this.canvas, this.slider), this.words);
+    this.root.append(element("span", { class: "caption", "aria-hidden": "true" }, "Go back"), element("div", { class: "track" }, this.canvas, this.slider), this.words);
     new ResizeObserver(() => {
       this.drawn = "";
     }).observe(this.canvas);

@@ -1,11 +1,12 @@
 // One sentence: what the tiles think together.
 
 /** @import { Tiles } from "../stream/tiles.js" */
-import { known } from "../stream/address.js";
+import { known } from "../stream/drawing.js";
 import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
 const SETTLED_MS = 1200;
+const LONG = 24; // characters; more have to be smaller, so that they stand in one line
 
 /** @param {string} label */
 const named = (label) => (label === "-" ? "a dash" : label);
@@ -27,7 +28,7 @@ export function verdictOn(tiles) {
   if (tiles.source === "failed") return { text: `The firmware of ${tiles.model} was not built`, label: "", agreed: false };
   if (total === 0) {
     if (tiles.kind === "watched") return { text: laid.length ? "No tile is heard" : "No tile yet", label: "", agreed: false };
-    const text = laid.length ? "No tile has power" : "The board is empty: click a place to put a tile";
+    const text = laid.length ? "No tile has power" : "The board is empty";
     const boot = laid.length > 0 && tiles.history.changes.length === 0;
     return { text: boot ? "The tiles boot" : text, label: "", agreed: false };
   }
@@ -62,6 +63,7 @@ export class Verdict {
       this.text = text;
       setText(this.line, text);
       this.line.classList.toggle("agreed", agreed);
+      this.line.classList.toggle("long", text.length > LONG);
     }
     if (this.text !== this.said && now - this.since > SETTLED_MS) {
       this.said = this.text;

@@ -4,8 +4,11 @@
 
 // Around the tiles: room to put one.
 const MARGIN = 0.62;
+const MARGIN_PX = 36; // and for a line of text
 const LARGEST = 132;
 const SMALLEST = 26;
+// In view where no tile lies: room for a digit.
+const [EMPTY_ROWS, EMPTY_COLS] = [5, 4];
 
 export class View {
   constructor() {
@@ -27,14 +30,20 @@ export class View {
     const cols = places.map(([, col]) => col);
     this.top = places.length ? Math.min(...rows) : 0;
     this.left = places.length ? Math.min(...cols) : 0;
-    this.rows = places.length ? Math.max(...rows) - this.top + 1 : 3;
-    this.cols = places.length ? Math.max(...cols) - this.left + 1 : 3;
+    this.rows = places.length ? Math.max(...rows) - this.top + 1 : EMPTY_ROWS;
+    this.cols = places.length ? Math.max(...cols) - this.left + 1 : EMPTY_COLS;
     const fitting = Math.min(
       width / (Math.max(this.cols, 3) + 2 * MARGIN), height / (Math.max(this.rows, 3) + 2 * MARGIN),
+      (height - 2 * MARGIN_PX) / Math.max(this.rows, 3),
     );
     this.size = Math.floor(Math.max(SMALLEST, Math.min(LARGEST, fitting)));
     this.x = Math.round((width - this.cols * this.size) / 2);
     this.y = Math.round((height - this.rows * this.size) / 2);
+  }
+
+  /** Opposite corners of what was fitted last. @returns {Place[]} */
+  ends() {
+    return [[this.top, this.left], [this.top + this.rows - 1, this.left + this.cols - 1]];
   }
 
   /** The upper left corner of a place. @param {number} row @param {number} col @returns {[number, number]} */

@@ -2,6 +2,7 @@
 
 /** @import { Drawing, Place } from "./source.js" */
 import { MOST_DEEDS, deedText, parseDeed } from "./deeds.js";
+import { cellsOf, known, rowsOf } from "./drawing.js";
 
 /**
  * @typedef {{cells: Place[], seed: number, speed: number, faults: string[], spread: number, until: number | null,
@@ -9,36 +10,10 @@ import { MOST_DEEDS, deedText, parseDeed } from "./deeds.js";
  */
 
 export const DEFAULT_SPEED = 0.1;
+// Twin of the least that a command takes (host/tilenca/protocol/stream_commands.py), but for 0.
+const LEAST_SPEED = 1e-5;
 export const DEFAULT_SPREAD_S = 0.25;
 const FIRST_DRAWING = "8";
-
-/** Places of the tiles of a drawing, whose rows have `#` or `1` for a tile. @param {string[]} rows */
-export function cellsOf(rows) {
-  /** @type {Place[]} */
-  const cells = [];
-  rows.forEach((row, r) => [...row].forEach((mark, c) => {
-    if (mark === "#" || mark === "1") cells.push([r, c]);
-  }));
-  return cells;
-}
-
-/** The drawing of some places, cropped, in rows of 1 and 0. @param {Place[]} cells */
-export function rowsOf(cells) {
-  const top = Math.min(...cells.map(([row]) => row));
-  const left = Math.min(...cells.map(([, col]) => col));
-  const height = Math.max(...cells.map(([row]) => row)) - top + 1;
-  const width = Math.max(...cells.map(([, col]) => col)) - left + 1;
-  const rows = Array.from({ length: height }, () => Array(width).fill("0"));
-  for (const [row, col] of cells) rows[row - top][col - left] = "1";
-  return rows.map((row) => row.join(""));
-}
-
-/** The offered drawing with these places. @param {Place[]} cells @param {Drawing[]} drawings */
-export function known(cells, drawings) {
-  if (!cells.length) return undefined;
-  const rows = rowsOf(cells).join();
-  return drawings.find((drawing) => rowsOf(cellsOf(drawing.rows)).join() === rows);
-}
 
 /** @param {string | null} text @param {number} low @param {number} high @param {number} otherwise */
 function numberIn(text, low, high, otherwise) {
@@ -62,7 +37,7 @@ export function readAddress(query, drawings) {
   return {
     cells: drawn.length ? drawn : cellsOf(shape?.rows ?? ["#"]),
     seed: Math.floor(numberIn(given.get("seed"), 0, Number.MAX_SAFE_INTEGER, 0)),
-    speed: numberIn(given.get("speed"), 0, 1024, DEFAULT_SPEED),
+    speed: Number(given.get("speed") || NaN) === 0 ? 0 : numberIn(given.get("speed"), LEAST_SPEED, 1024, DEFAULT_SPEED),
     faults: given.getAll("fault").slice(0, 32),
     spread: numberIn(given.get("spread"), 0, 3600, DEFAULT_SPREAD_S),
     until: Number.isNaN(until) ? null : until,

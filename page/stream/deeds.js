@@ -1,7 +1,7 @@
 // What hands did and when, as an address has it: `0.65,pull,4` or `0.7,cut,3W,1`.
 
 /** @import { Command, Place } from "./source.js" */
-import { cellsOf, rowsOf } from "./address.js";
+import { cellsOf, rowsOf } from "./drawing.js";
 
 /** @typedef {{time: number, deed: Command}} Deed */
 

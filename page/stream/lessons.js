@@ -3,7 +3,7 @@
 /** @import { Command, Place } from "./source.js" */
 /** @import { LaidTile } from "./tile.js" */
 /** @import { Tiles } from "./tiles.js" */
-import { cellsOf, known } from "./address.js";
+import { cellsOf, known } from "./drawing.js";
 import { SIDES } from "./source.js";
 
 /**

@@ -3,7 +3,8 @@
 /** @import { Command } from "./source.js" */
 /** @import { Start } from "./address.js" */
 /** @import { Tiles } from "./tiles.js" */
-import { known, readAddress, writeAddress } from "./address.js";
+import { readAddress, writeAddress } from "./address.js";
+import { known } from "./drawing.js";
 import { MOST_DEEDS, MOST_TEXT } from "./deeds.js";
 import { faultsNow, kindsChangedBy, lossOf } from "./faults.js";
 
@@ -32,6 +33,8 @@ export class Run {
     /** @type {Set<string>} */
     this.handled = new Set();
     this.noise = 0;
+    /** Whether it began as usual, since what the address asks for cannot be. */
+    this.isUsual = false;
   }
 
   /** Whether it can begin anew: real tiles cannot. */
@@ -74,11 +77,13 @@ export class Run {
     this.open({ ...this.start, until: null, deeds: [] });
   }
 
-  /** Begins again without the faults, which cannot be; false where there were none. */
-  withoutFaults() {
-    if (!this.start?.faults.length) return false;
-    this.open({ ...this.start, faults: [] });
-    return true;
+  /** Begins again without what an address asks for and cannot be: its faults and deeds, or else all of it. */
+  withoutRefused() {
+    if (!this.start || this.isUsual) return;
+    const { faults, deeds } = this.start;
+    this.isUsual = faults.length + deeds.length === 0;
+    const start = this.isUsual ? readAddress("", this.tiles.drawings) : this.start;
+    this.open({ ...start, faults: [], deeds: [] });
   }
 
   /** The query of the address of the run as it was, with all that hands did, until now; null where that is too much. */

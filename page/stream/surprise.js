@@ -2,7 +2,7 @@
 
 /** @import { Command } from "./source.js" */
 /** @import { Tiles } from "./tiles.js" */
-import { cellsOf, known } from "./address.js";
+import { cellsOf, known } from "./drawing.js";
 import { SIDES } from "./source.js";
 
 /**

@@ -45,7 +45,7 @@ def test_the_eight_steps_are_done_by_hand(visit: Visit, server: PageServer) -> N
     visit.drag((left - 60, cable), (right + 60, cable))
     done(visit, 7, "Each group agrees with itself")
     visit.wait_for_verdict("All 16 tiles show 8")
-    page.get_by_role("button", name="Draw").click()
+    page.get_by_role("button", name="Draw", exact=True).click()
     visit.drag(visit.middle("[data-port=tile-05]"), visit.middle("[data-port=tile-13]"))
     for tile in ("14", "15"):
         visit.drag(visit.middle(f"[data-port=tile-{tile}]"), visit.middle(f"[data-port=tile-{tile}]"))

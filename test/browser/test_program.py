@@ -55,6 +55,7 @@ def test_one_instruction_after_the_other(visit: Visit, address: str) -> None:
     assert clocked(page) >= second + 100
     assert page.locator(".registers li").count() == 32
     assert page.locator(".registers .changed").count() > 0
+    assert Axe().run(page).violations_count == 0  # with the list of variables, which scrolls
     page.get_by_label("Look for a variable").focus()
     page.keyboard.type("sending")
     names = page.locator(".variables dt").all_inner_texts()

@@ -226,7 +226,8 @@ def test_with_its_extra_it_serves_the_page(wheel: Path, tmp_path: Path) -> None:
         assert serving.stdout is not None
         host, _, port = serving.stdout.readline().strip().removeprefix("http://").rstrip("/").partition(":")
         address = (host, int(port))
-        assert get(address, "/main.js").read() == (paths.PAGE / "main.js").read_bytes()
+        assert get(address, "/index.html").read() == (paths.PAGE / "index.html").read_bytes()
+        assert (paths.PAGE / "main.js").read_bytes().splitlines()[-1] in get(address, "/main.js").read()
         client = WebSocketClient(address)
         first = client.watch("stream")
         assert first["drawings"][0]["name"] == "digits/0"

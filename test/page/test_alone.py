@@ -1,6 +1,5 @@
 """The page as one file: everything is in it, and the recording cannot break out of its place."""
 
-import base64
 import json
 import re
 import shutil
@@ -11,16 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tilenca.base import paths
-from tilenca.page.alone import HOLE, AloneError, modules, page_alone, with_recording
+from tilenca.page.alone import HOLE, AloneError, page_alone, with_recording
+from tilenca.page.joined import JoinError, joined
 
 DOCUMENT = page_alone(paths.PAGE)
-
-
-def imports_of(document: str) -> dict[str, str]:
-    found = re.search(r'<script type="importmap">(.*?)</script>', document, re.DOTALL)
-    assert found is not None
-    data: dict[str, str] = json.loads(found[1])["imports"]
-    return {name: base64.b64decode(text.partition(",")[2]).decode() for name, text in data.items()}
 
 
 def test_nothing_is_asked_of_anybody() -> None:
@@ -33,12 +26,12 @@ def test_nothing_is_asked_of_anybody() -> None:
     assert DOCUMENT.count(HOLE) == 1
 
 
-def test_every_module_that_is_imported_is_there() -> None:
-    texts = imports_of(DOCUMENT)
-    assert len(texts) == len(modules(paths.PAGE)) > 30
-    for text in texts.values():
-        assert set(re.findall(r'"(tilenca/[^"]+)";', text)) <= texts.keys()
-        assert not re.search(r'^(import|export)\b[^;]*?from "\.', text, re.MULTILINE)
+def test_its_program_stands_in_one_script_that_nothing_ends_early() -> None:
+    programs = re.findall(r'<script type="module">(.*?)</script>', DOCUMENT, re.DOTALL)
+    assert [program.replace(r"\x3C", "<").strip() for program in programs] == [
+        joined(paths.PAGE, "main.js").strip()
+    ]
+    assert not re.search(r"<!--|<script", programs[0])
 
 
 @given(st.text())
@@ -55,7 +48,7 @@ def test_a_page_that_lacks_a_module_or_its_marks_is_refused(tmp_path: Path) -> N
     broken = tmp_path / "page"
     shutil.copytree(paths.PAGE, broken)
     (broken / "stream" / "led.js").unlink()
-    with pytest.raises(AloneError, match=r"led\.js: No such file"):
+    with pytest.raises(JoinError, match=r"led\.js: No such file"):
         page_alone(broken)
     (broken / "index.html").write_text("<p>none</p>")
     with pytest.raises(AloneError, match="what stands behind it"):

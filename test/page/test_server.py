@@ -20,8 +20,9 @@ from support.page_server import PageServer, page_server
 from support.web_socket import RefusedError, WebSocketClient, get
 from tilenca.base import paths
 from tilenca.page.guard import HEADERS
+from tilenca.page.joined import joined
 from tilenca.page.outbox import MOST_UNSEEN
-from tilenca.page.server import MAX_MESSAGE, MOST_CLIENTS
+from tilenca.page.server import ENTRIES, MAX_MESSAGE, MOST_CLIENTS
 
 LIMIT_S = 60
 OPEN = {"do": "open", "cells": [[0, 0], [0, 1]], "spread_s": 0}
@@ -52,6 +53,13 @@ def test_the_bundle_is_served_with_its_policy(server: PageServer) -> None:
         ("icon.svg", "image/svg"),
     ):
         assert get(server.address, f"/{name}").headers["Content-Type"].startswith(kind)
+
+
+def test_a_program_comes_in_one_answer_and_each_module_by_itself(server: PageServer) -> None:
+    for entry in ENTRIES:
+        assert get(server.address, f"/{entry}").read().decode() == joined(paths.PAGE, entry)
+    alone = get(server.address, "/stream/tiles.js").read()
+    assert alone == (paths.PAGE / "stream" / "tiles.js").read_bytes()
 
 
 @pytest.mark.parametrize(

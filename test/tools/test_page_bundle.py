@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from release import page_bundle
-from release.page_bundle import BundleError, lay_out, main, modules_of
+from release.page_bundle import BundleError, lay_out, main
 from tilenca.base import paths
 from tilenca.page.alone import BEHIND
 from tilenca.page.chosen import ModelOffer
+from tilenca.page.joined import JoinError, joined
 from tilenca.page.offer import load_offer
 
 
@@ -25,7 +26,7 @@ def web(tmp_path: Path, firmware: Path) -> Path:
         'import {\n  one,\n  two,\n} from "./sides.js";\nexport { a } from "./a.js";\n'
     )
     (folder / "sides.js").write_text("export const one = 1;\n")
-    (folder / "a.js").write_text('import "node:fs";\n')
+    (folder / "a.js").write_text("export const a = 2;\n")
     (folder / "simulator.js").write_text("")
     (folder / "tilenca_emulator.wasm").write_bytes(b"\0asm")
     (folder / "firmware.elf").write_bytes(firmware.read_bytes())
@@ -38,16 +39,12 @@ def test_it_has_the_page_the_emulator_and_what_is_offered(web: Path, tmp_path: P
     assert main([str(web), str(out)]) == 0
     files = {str(path.relative_to(out)) for path in out.rglob("*") if path.is_file()}
     page = {str(path.relative_to(paths.PAGE)) for path in paths.PAGE.rglob("*") if path.is_file()}
-    beside = [
-        "stream/worker.js",
-        "tile.js",
-        "sides.js",
-        "a.js",
-        "tilenca_emulator.wasm",
-        "firmware.elf",
-        "offer.json",
-    ]
-    assert files == page | {"alone.html"} | {f"emulator/{name}" for name in beside}
+    beside = ["stream/worker.js", "tilenca_emulator.wasm", "firmware.elf", "offer.json"]
+    documents = {name for name in page if not name.endswith(".js")}
+    assert files == documents | {"main.js", "compare.js", "alone.html"} | {
+        f"emulator/{name}" for name in beside
+    }
+    assert (out / "emulator" / "stream" / "worker.js").read_text() == joined(web, "stream/worker.js")
     assert BEHIND.format("emulator") in (out / "index.html").read_text()
     offer = json.loads((out / "emulator" / "offer.json").read_text())
     assert (offer["period_ms"], offer["updates"]) == (20, 0)
@@ -56,8 +53,8 @@ def test_it_has_the_page_the_emulator_and_what_is_offered(web: Path, tmp_path: P
 
 def test_what_is_not_built_is_named(web: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (web / "sides.js").unlink()
-    with pytest.raises(BundleError, match=r"sides\.js: not there; run: make web"):
-        modules_of(web, Path("stream/worker.js"))
+    with pytest.raises(JoinError, match=r"sides\.js: No such file"):
+        lay_out(web, tmp_path / "half")
     (web / "sides.js").touch()
     (web / "tilenca_emulator.wasm").unlink()
     with pytest.raises(BundleError, match=r"tilenca_emulator.wasm: not there"):

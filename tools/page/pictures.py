@@ -13,7 +13,7 @@ from bench import chromium
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "docs" / "images" / "page.png"
-RUN = "?shape=digits/8&seed=1&speed=0.1&until=0.43"
+RUN = "?shape=digits/8&seed=1&speed=0.1&until=0.47"
 
 
 def main() -> None:

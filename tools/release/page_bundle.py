@@ -1,13 +1,13 @@
 """Lays out the page that needs no server of its own: python -m release.page_bundle WEB OUT [MODEL...].
 
-WEB is what `make web` has built. OUT gets the page, the emulator's WebAssembly with the JavaScript that it
-needs, the firmware, and what there is to see of it: labels, looks, drawings. Each MODEL, a name of those that
-ship, or "all", is one more to choose from: its firmware, built if need be, is fetched by whoever chooses it.
+WEB is what `make web` has built. OUT gets the page, the emulator's WebAssembly, each program of JavaScript
+as one file, the firmware, and what there is to see of it: labels, looks, drawings. Each MODEL, a name of
+those that ship, or "all", is one more to choose from: its firmware, built if need be, is fetched by whoever
+chooses it.
 """
 
 import gzip
 import json
-import re
 import shutil
 import sys
 import threading
@@ -22,41 +22,23 @@ from tilenca.emulator.greeting import firmware_settings
 from tilenca.page.alone import BEHIND, page_alone
 from tilenca.page.chosen import ModelOffer
 from tilenca.page.emulated import EmulatedSource
+from tilenca.page.joined import joined
 from tilenca.page.offer import Offer, load_offer
+from tilenca.page.server import ENTRIES
 
 # Where page/stream/emulator.js looks for it.
 EMULATOR = "emulator"
-WORKER = Path("stream/worker.js")
+WORKER = "stream/worker.js"
 FILES = ("tilenca_emulator.wasm", "firmware.elf")
 # Where web/src/stream/worker.js looks for the others.
 MODELS = "models"
 ALL = "all"
 MOST_GZIPPED = 1_000_000  # bytes of all files
 OFFER_GZIPPED = 4_000  # room for what there is to see of a model
-_IMPORT = re.compile(r"""^(?:import|export)\b[^"';]*?from\s*"(\.[^"]+)";""", re.MULTILINE)
 
 
 class BundleError(Exception):
     """Something that the bundle needs is missing."""
-
-
-def modules_of(web: Path, entry: Path) -> set[Path]:
-    """The modules that one needs, itself included, as paths within `web`.
-
-    Raises:
-        BundleError: one of them is not there.
-    """
-    found: set[Path] = set()
-    waiting = [web / entry]
-    while waiting:
-        module = waiting.pop().resolve()
-        if module.relative_to(web.resolve()) in found:
-            continue
-        if not module.is_file():
-            raise BundleError(f"{module}: not there; run: make web")
-        found.add(module.relative_to(web.resolve()))
-        waiting += [module.parent / name for name in _IMPORT.findall(module.read_text(encoding="utf-8"))]
-    return found
 
 
 def offer_of(
@@ -97,21 +79,11 @@ def lay_out(web: Path, out: Path, names: Sequence[str] = ()) -> None:
         BundleError: `make web` has not been there.
         TilencaError: the firmware or a shape file cannot be used.
     """
-    needed = [*map(Path, FILES), *sorted(modules_of(web, WORKER))]
-    if missing := [name for name in needed if not (web / name).is_file()]:
+    if missing := [name for name in (*FILES, WORKER) if not (web / name).is_file()]:
         raise BundleError(f"{web / missing[0]}: not there; run: make web")
     added = chosen(names)
     shutil.rmtree(out, ignore_errors=True)
-    shutil.copytree(paths.PAGE, out)
-    document = out / "index.html"
-    text = document.read_text(encoding="utf-8")
-    if text.count(BEHIND.format("server")) != 1:
-        raise BundleError(f"{document}: it does not say once what stands behind the page")
-    document.write_text(text.replace(BEHIND.format("server"), BEHIND.format("emulator")), encoding="utf-8")
-    for name in needed:
-        (out / EMULATOR / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(web / name, out / EMULATOR / name)
-    (out / "alone.html").write_text(page_alone(paths.PAGE), encoding="utf-8")
+    _lay_out_page(web, out)
     [first] = page_models(web / "firmware.elf", None, ())
     room = MOST_GZIPPED - sum(map(_gzipped, out.rglob("*")))
     models = [first]
@@ -124,14 +96,33 @@ def lay_out(web: Path, out: Path, names: Sequence[str] = ()) -> None:
             )
             continue
         room -= needed_bytes
-        (out / EMULATOR / MODELS).mkdir(exist_ok=True)
-        shutil.copyfile(image, out / EMULATOR / MODELS / f"{model.name}.elf")
+        _copy(image, out / EMULATOR / MODELS / f"{model.name}.elf")
         models.append(model)
     for model in models:
         offer = EMULATOR + ("/offer" if model is first else f"/{MODELS}/{model.name}")
         image = out / EMULATOR / "firmware.elf" if model is first else out / f"{offer}.elf"
         told = offer_of(image, model.offer, model.name, models if len(models) > 1 else ())
         (out / f"{offer}.json").write_text(told + "\n", encoding="utf-8")
+
+
+def _lay_out_page(web: Path, out: Path) -> None:
+    """Writes the page, and the emulator with the firmware that it was built for."""
+    for path in paths.PAGE.rglob("*"):
+        if path.is_file() and path.suffix != ".js":
+            _copy(path, out / path.relative_to(paths.PAGE))
+    document = out / "index.html"
+    text = document.read_text(encoding="utf-8")
+    if text.count(BEHIND.format("server")) != 1:
+        raise BundleError(f"{document}: it does not say once what stands behind the page")
+    document.write_text(text.replace(BEHIND.format("server"), BEHIND.format("emulator")), encoding="utf-8")
+    programs = {name: joined(paths.PAGE, name) for name in ENTRIES}
+    programs[f"{EMULATOR}/{WORKER}"] = joined(web, WORKER)
+    for name, text in programs.items():
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        (out / name).write_text(text, encoding="utf-8")
+    for name in FILES:
+        _copy(web / name, out / EMULATOR / name)
+    (out / "alone.html").write_text(page_alone(paths.PAGE), encoding="utf-8")
 
 
 def chosen(names: Sequence[str]) -> list[ModelOffer]:
@@ -148,6 +139,11 @@ def chosen(names: Sequence[str]) -> list[ModelOffer]:
     if unknown := [name for name in names if name not in found]:
         raise BundleError(f"{unknown[0]}: no model to add; there are {', '.join(sorted(found))}")
     return [found[name] for name in names]
+
+
+def _copy(path: Path, to: Path) -> None:
+    to.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(path, to)
 
 
 def _gzipped(path: Path) -> int:

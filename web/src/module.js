@@ -47,6 +47,9 @@ async function compiled(source) {
   if (!response.ok) {
     throw new TilencaError(`${address}: ${response.status} ${response.statusText}; serve the whole bundle`);
   }
+  if (response.headers.get("content-type") === "application/wasm") {
+    return WebAssembly.compileStreaming(response); // while it comes; not every server of files names the type
+  }
   return WebAssembly.compile(await response.arrayBuffer());
 }
 

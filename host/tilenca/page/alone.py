@@ -1,32 +1,29 @@
-"""The page as one file that replays a recording, and needs no server: it opens from a disk, a mail, a frame.
-
-Its modules lie in the document as data, under the names that an import map gives them, so that nothing is
-built, and nothing is rewritten but the names in their imports.
-"""
+"""The page as one file that replays a recording: it opens from a disk, a mail, a frame, without a server."""
 
 import base64
-import json
 import re
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from tilenca.base.errors import TilencaError
+from tilenca.page.joined import joined
 
 BEHIND = '<meta name="tilenca-source" content="{}">'
 POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; img-src data:; "
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
     "base-uri 'none'; form-action 'none'"
 )
 # Where the recording goes; the page looks for this, too.
 HOLE = "<!-- the recording -->"
 ENTRY = "main.js"
-_IMPORT = re.compile(r"""^(?P<head>(?:import|export)\b[^"';]*?)"(?P<name>\.[^"]+)";""", re.MULTILINE)
 _STYLE = re.compile(r'<link rel="stylesheet" href="([^"]+)">')
 _ICON = re.compile(r'href="(icon\.svg)"')
 _SCRIPT = f'<script type="module" src="{ENTRY}"></script>'
+# What would end a script, or begin a comment, where it stands in a text of JavaScript.
+_MARKUP = re.compile(r"<(?=/?script|!--)", re.IGNORECASE)
 
 
 class AloneError(TilencaError):
-    """The page's files are not as they should be."""
+    """The page's document is not as it should be."""
 
 
 def page_alone(bundle: Path) -> str:
@@ -36,7 +33,8 @@ def page_alone(bundle: Path) -> str:
         bundle: folder of the static page.
 
     Raises:
-        AloneError: its files do not go together.
+        AloneError: its document is not as it should be.
+        JoinError: its modules do not go together.
     """
     text = (bundle / "index.html").read_text(encoding="utf-8")
     behind = BEHIND.format("server")
@@ -48,13 +46,9 @@ def page_alone(bundle: Path) -> str:
     text = text.replace(behind, f"{policy}\n  {BEHIND.format('recording')}")
     text = _STYLE.sub(lambda link: f"<style>\n{(bundle / link[1]).read_text(encoding='utf-8')}</style>", text)
     text = _ICON.sub(lambda link: f'href="{_data(bundle / link[1], "image/svg+xml")}"', text)
-    imports = {f"tilenca/{name}": _module(bundle, name) for name in modules(bundle)}
-    scripts = [
-        f'<script type="importmap">{json.dumps({"imports": imports})}</script>',
-        HOLE,
-        f'<script type="module">import "tilenca/{ENTRY}";</script>',
-    ]
-    return text.replace(_SCRIPT, "\n  ".join(scripts))
+    program = _MARKUP.sub(r"\\x3C", joined(bundle, ENTRY))
+    script = f'<script type="module">\n{program}</script>'
+    return text.replace(_SCRIPT, f"{HOLE}\n  {script}")
 
 
 def with_recording(document: str, recording: str) -> str:
@@ -66,44 +60,6 @@ def with_recording(document: str, recording: str) -> str:
     """
     safe = recording.replace("<", "\\u003c")  # in JSON it stands in texts only, and means the same there
     return document.replace(HOLE, f'<script type="application/jsonl" id="recording">\n{safe}</script>')
-
-
-def modules(bundle: Path) -> list[str]:
-    """The paths of the modules that the page runs, within the bundle.
-
-    Raises:
-        AloneError: one is not there.
-    """
-    found: dict[str, None] = {}
-    waiting = [ENTRY]
-    while waiting:
-        name = waiting.pop(0)
-        if name in found:
-            continue
-        found[name] = None
-        try:
-            text = (bundle / name).read_text(encoding="utf-8")
-        except OSError as error:
-            raise AloneError(f"{bundle / name}: {error.strerror}") from error
-        waiting += [_resolved(name, match["name"]) for match in _IMPORT.finditer(text)]
-    return list(found)
-
-
-def _resolved(module: str, name: str) -> str:
-    """The path of what a module imports by a relative name."""
-    parts: list[str] = []
-    for part in (PurePosixPath(module).parent / name).parts:
-        if part == "..":
-            parts.pop()
-        else:
-            parts.append(part)
-    return "/".join(parts)
-
-
-def _module(bundle: Path, name: str) -> str:
-    text = (bundle / name).read_text(encoding="utf-8")
-    named = _IMPORT.sub(lambda found: f'{found["head"]}"tilenca/{_resolved(name, found["name"])}";', text)
-    return f"data:text/javascript;base64,{base64.b64encode(named.encode()).decode()}"
 
 
 def _data(path: Path, kind: str) -> str:

@@ -18,12 +18,15 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from tilenca.page.alone import BEHIND, page_alone
 from tilenca.page.guard import Guard, GuardedApp
+from tilenca.page.joined import joined
 from tilenca.page.outbox import Outbox
 from tilenca.page.session import Session, Source
 from tilenca.protocol.stream import StreamEvent, refused_event
 from tilenca.protocol.stream_commands import MAX_TEXT, Seen, parse_command
 
 MOST_CLIENTS = 4
+# The modules that the documents name; each is served with all that it imports in it.
+ENTRIES = ("main.js", "compare.js")
 # Bytes; a character takes at most four.
 MAX_MESSAGE = 4 * MAX_TEXT
 POLICY_VIOLATION, INTERNAL_ERROR, TRY_AGAIN_LATER = 1008, 1011, 1013
@@ -161,8 +164,13 @@ def _app(bundle: Path, guard: Guard, routes: Sequence[BaseRoute]) -> ASGIApp:
     async def alone(request: Request) -> Response:
         return PlainTextResponse(page_alone(bundle))
 
+    async def program(request: Request) -> Response:
+        text = joined(bundle, request.url.path.removeprefix("/"))
+        return PlainTextResponse(text, media_type="text/javascript")
+
+    made = [Route("/alone.html", alone), *(Route(f"/{entry}", program) for entry in ENTRIES)]
     files = Mount("/", StaticFiles(directory=bundle, html=True))
-    return GuardedApp(Starlette(routes=[*routes, Route("/alone.html", alone), files]), guard)
+    return GuardedApp(Starlette(routes=[*routes, *made, files]), guard)
 
 
 def serve(app: ASGIApp, listener: socket.socket, on_start: Callable[[], None]) -> None:

@@ -23,11 +23,13 @@ async function fetched(name) {
 /** What there is to see of the model that the worker's address asks for by name or id, and its firmware. */
 async function chosen() {
   const wanted = new URL(import.meta.url).searchParams.get("model") ?? "";
+  const usual = wanted ? null : fetched("firmware.elf"); // at once: most pages want this one
+  usual?.catch(() => {}); // it is told where it is awaited
   /** @type {import("./source.js").Offer} */
   const first = await (await fetched("offer.json")).json();
   const models = first.stream.models ?? [];
   const name = models.find((model) => wanted && [model.name, model.id].includes(wanted))?.name ?? first.stream.model;
-  if (name === first.stream.model) return { offer: first, image: await (await fetched("firmware.elf")).arrayBuffer() };
+  if (name === first.stream.model) return { offer: first, image: await (await (usual ?? fetched("firmware.elf"))).arrayBuffer() };
   const path = `models/${encodeURIComponent(name ?? "")}`;
   const [offer, image] = await Promise.all([fetched(`${path}.json`), fetched(`${path}.elf`)]);
   return { offer: /** @type {import("./source.js").Offer} */ (await offer.json()), image: await image.arrayBuffer() };

@@ -1,0 +1,46 @@
+// What the chosen tool does, on the board itself, until a hand has done it.
+
+/** @import { Tiles } from "../stream/tiles.js" */
+/** @import { Tool } from "./hands.js" */
+import { setText } from "./dom.js";
+
+/** @type {Record<Tool, string>} */
+const WORDS = {
+  hand: "Drag a tile off the board",
+  group: "Drag all that hangs together",
+  pencil: "Drag to put tiles in, or to rub out",
+  knife: "Drag across cables; click one to mend",
+};
+const EMPTY = "Click free places, or choose Draw";
+const DEEDS = ["put", "pull", "move", "shift", "cut"];
+
+export class Hint {
+  /** @param {HTMLElement} root @param {Tiles} tiles */
+  constructor(root, tiles) {
+    this.root = root;
+    this.tiles = tiles;
+    /** @type {Tool} */
+    this.tool = "hand";
+    /** Tools that a hand has used. @type {Set<Tool>} */
+    this.known = new Set();
+  }
+
+  /** @param {Tool} tool */
+  choose(tool) {
+    this.tool = tool;
+    this.update();
+  }
+
+  /** A hand does something. @param {string} deed */
+  note(deed) {
+    if (DEEDS.includes(deed)) this.known.add(this.tool);
+    this.update();
+  }
+
+  update() {
+    const { tiles, tool } = this;
+    const isLost = tiles.byPlace.size === 0 && tool !== "pencil"; // nothing lies there that it could work on
+    this.root.hidden = (this.known.has(tool) && !isLost) || !tiles.can("put") || tiles.runs === 0;
+    setText(this.root, isLost ? EMPTY : WORDS[tool]);
+  }
+}
