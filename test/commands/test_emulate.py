@@ -194,7 +194,7 @@ def test_shapes_the_firmware_was_not_trained_on_name_the_model_and_the_remedy(
     capsys: pytest.CaptureFixture[str], row: Path
 ) -> None:
     status, out, err = emulate(
-        capsys, "--shapes", row, "--seconds", "0.3", "--boot-spread", "0", "--bootloader", "none"
+        capsys, "--shapes", row, "--seconds", "1.5", "--boot-spread", "0", "--bootloader", "none"
     )
     assert status == 1
     assert re.search("1: WRONG, . of 3 tiles show 1, .* with model [0-9A-F]{4}; -v lists them", out)

@@ -12,7 +12,7 @@ from tilenca.base import paths
 from tilenca.commands.train_plan import TrainingPlan
 from tilenca.commands.train_steps import at_once, jobs_of
 from tilenca.evaluation.suites import Suite
-from tilenca.evaluation.workload import updates_of
+from tilenca.evaluation.workload import work_of
 from tilenca.model import cost
 from tilenca.model.file import Model
 from tilenca.shapes.batch import Drawings
@@ -27,6 +27,7 @@ TIMED_STEPS, TIMED_S = 3, 2.0  # at least so many iterations are timed, and for 
 PROBE_UPDATES, PROBE_STEPS, PROBE_S = 60_000, 30, 0.5  # of tiles at once, and for at least how long
 # Processor time on one machine (a Xeon of 2.0 to 3.0 GHz), of which this one is faster or slower.
 S_PER_MAC = 0.062e-9
+ROW_S = 0.02  # of a measurement, beside the updates of its tiles
 COLD_BUILD_S, WARM_BUILD_S = 5.0, 2.0
 EMULATE_S, EMULATE_TILE_S = 2.0, 0.06
 
@@ -60,7 +61,8 @@ def pace_of(model: Model, drawings: Drawings) -> Pace:
 
 def measuring_s(model: Model, suite: Suite, runs: int, pace: Pace) -> float:
     """How long it takes to measure such a model, the making of the suite left out."""
-    return updates_of(FastEngine(model), suite, runs) * pace.update_s
+    work = work_of(FastEngine(model), suite, runs)
+    return work.updates * pace.update_s + work.rows * ROW_S * pace.factor
 
 
 def building_s(args: argparse.Namespace, pace: Pace) -> float:

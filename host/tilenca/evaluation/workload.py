@@ -1,6 +1,7 @@
 """How much there is to compute in the measurements of a model, counted without computing it."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,15 @@ from tilenca.simulator.simulator import Trajectory
 from tilenca.simulator.transitions import Way, pairs_of
 
 
-def updates_of(engine: Engine, suite: Suite, runs: int) -> int:
-    """The updates of tiles in all rows of the table of a suite; of changes tile by tile about as many.
+class Work(NamedTuple):
+    """The work of a table of measurements: its rows, and the updates of tiles in them."""
+
+    rows: int
+    updates: int
+
+
+def work_of(engine: Engine, suite: Suite, runs: int) -> Work:
+    """The work of measuring a suite; the updates of changes tile by tile are about as many.
 
     Args:
         engine: of a model with these classes; it computes nothing here.
@@ -24,9 +32,8 @@ def updates_of(engine: Engine, suite: Suite, runs: int) -> int:
         runs: of each drawing, as of `Evaluator`.
     """
     workload = _Workload(engine, suite, runs, seed=0)
-    for _ in workload.rows():
-        pass
-    return workload.updates
+    rows = sum(1 for _ in workload.rows()) + len(suite.dead) + sum(len(each.rows) for each in suite.missing)
+    return Work(rows, workload.updates)
 
 
 class _Workload(Evaluator):
