@@ -108,9 +108,8 @@ def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
     if not tables:
         raise UsageError(f"{path}: no training there has a history to draw")
     with styled():
-        figure = Figure(figsize=(WIDTH_IN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08))
+        figure = titled_figure("Trainings", 5.6, 0.08)
         upper, lower = figure.subplots(2, 1, sharex=True)
-        figure.suptitle("Trainings", x=0.02, ha="left", fontsize=13, fontweight="bold")
         for number, (name, table) in enumerate(tables.items()):
             draw_line(upper, table[:, 0], table[:, 1], number, name)
             draw_line(lower, table[:, 0], table[:, 2], number, name)
@@ -120,6 +119,14 @@ def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
         lower.set_ylabel("training samples all right")
         lower.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, fontsize="small")
         save(figure, path)
+
+
+def titled_figure(title: str, height_in: float, apart_in: float) -> Figure:
+    """An empty figure of our width, whose panels will lie so far apart."""
+    layout = ConstrainedLayoutEngine(w_pad=0.12, h_pad=apart_in)
+    figure = Figure(figsize=(WIDTH_IN, height_in), layout=layout)
+    figure.suptitle(title, x=0.02, ha="left", fontsize=13, fontweight="bold")
+    return figure
 
 
 def as_loss(axes: Axes, least: float) -> None:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,17 +18,17 @@ from tilenca.views.abilities import QUESTIONS, Targets
 from tilenca.views.plots import (
     FAINT,
     INK,
-    WIDTH_IN,
-    Axes,
-    ConstrainedLayoutEngine,
-    Figure,
     as_iterations,
     as_loss,
     as_share,
     draw_line,
     save,
     styled,
+    titled_figure,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 HISTORY = ("iteration", "loss", "agreement")
 CURVE_IN, PANEL_IN, AROUND_IN = 1.9, 0.62, 0.9  # heights: a curve, a kind of measurement, title and axis
@@ -69,12 +70,8 @@ def plot_history(
     kinds = sorted({*measured, *targets}, key=_place)
     heights = [CURVE_IN, CURVE_IN, *[PANEL_IN] * len(kinds)]
     with styled():
-        figure = Figure(
-            figsize=(WIDTH_IN, sum(heights) + AROUND_IN),
-            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.05),
-        )
+        figure = titled_figure(title, sum(heights) + AROUND_IN, 0.05)
         panels = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
-        figure.suptitle(title, x=0.02, ha="left", fontsize=13, fontweight="bold")
         draw_line(panels[0], data["iteration"], data["loss"], 0, colour=INK)
         as_loss(panels[0], float(np.nanmin(data["loss"], initial=math.inf)))
         draw_line(panels[1], data["iteration"], data["agreement"], 0, colour=INK)
@@ -91,7 +88,7 @@ def plot_history(
 
 
 def _draw_kind(
-    axes: Axes,
+    axes: "Axes",
     kind: str,
     iteration: NDArray[np.float64],
     shares: NDArray[np.float64] | None,
@@ -113,7 +110,7 @@ def _draw_kind(
     axes.set_title(text, loc="right", fontsize="small", color=colour)
 
 
-def _draw_point(axes: Axes, x: float, y: float, marker: str, held: bool | None) -> None:
+def _draw_point(axes: "Axes", x: float, y: float, marker: str, held: bool | None) -> None:
     colour = {None: FAINT, True: HELD, False: MISSED}[held]
     axes.plot(
         [x],
