@@ -91,7 +91,8 @@ def why_wrong(model: Model, task: Task) -> str:
     named = _hashes(model)
     sha256 = hashlib.sha256(task.path.read_bytes()).hexdigest()
     id_text = f"{model.model_id:04X}"
-    if sha256 in named.values():
+    ships_with_it = task.path.name in named and task.path.resolve().is_relative_to(paths.SHAPES.resolve())
+    if sha256 in named.values() or ships_with_it:
         made = f"model {id_text} was made of this file, and does not hold it; a better one: --recipe full"
     else:
         files = " ".join(named) or "other drawings"
