@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from support.alone import alone
+from support.making import asked
 from support.schemas import fits
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -24,11 +25,9 @@ from tilenca.commands import emulate, make
 from tilenca.commands.emulate_runs import EmulationResult
 from tilenca.commands.make import STEPS
 from tilenca.commands.train_plan import make_plan
-from tilenca.commands.train_steps import jobs_of
 from tilenca.emulator.greeting import greeting
 from tilenca.model import cost
 from tilenca.model.file import load_model
-from tilenca.training.runner import make_trainer
 from tilenca.views.progress import Tell
 from tilenca.views.steps import Steps
 
@@ -127,14 +126,6 @@ def test_a_model_is_the_best_of_the_seeds_that_its_command_names(trained_model: 
         assert make._seeds({"command": odd}) == ()
 
 
-def _asked(shapes: Path, out: Path, *more: str) -> argparse.Namespace:
-    """The arguments of a training like that of `trained_model`."""
-    words = [str(shapes), "--out", str(out), "--recipe", "smoke", "--hidden", "12", "--seed", "5", *more]
-    args = make._parsed(make, words)
-    make._complete(args)
-    return args
-
-
 def _changed(model: Path, out: Path, **metadata: object) -> Path:
     """A copy of a model with other metadata."""
     shutil.copytree(model, out)
@@ -147,13 +138,13 @@ def _changed(model: Path, out: Path, **metadata: object) -> Path:
 def test_a_model_is_the_one_asked_for_only_with_the_same_initial_weights(
     two_shapes: Path, trained_model: Path, tmp_path: Path
 ) -> None:
-    same = _asked(two_shapes, trained_model)
+    same = asked(two_shapes, trained_model)
     assert make._is_trained(same, make_plan(same))
-    args = _asked(two_shapes, trained_model, "--weights", str(trained_model))
+    args = asked(two_shapes, trained_model, "--weights", str(trained_model))
     with pytest.raises(UsageError, match=r"another .* --weights"):
         make._is_trained(args, make_plan(args))
     begun = _changed(trained_model, tmp_path / "begun", initial=f"{load_model(trained_model).model_id:04X}")
-    args = _asked(two_shapes, begun, "--weights", str(trained_model))
+    args = asked(two_shapes, begun, "--weights", str(trained_model))
     assert make._is_trained(args, make_plan(args))
 
 
@@ -163,41 +154,19 @@ def test_a_model_is_the_one_asked_for_only_with_the_same_initial_weights(
 def test_a_model_of_odd_metadata_is_another_one(
     odd: dict[str, object], two_shapes: Path, trained_model: Path, tmp_path: Path
 ) -> None:
-    args = _asked(two_shapes, _changed(trained_model, tmp_path / "odd", **odd))
+    args = asked(two_shapes, _changed(trained_model, tmp_path / "odd", **odd))
     with pytest.raises(UsageError, match="holds a model of another file"):
         make._is_trained(args, make_plan(args))
-
-
-def test_the_estimate_counts_what_is_left_of_every_seed(two_shapes: Path, tmp_path: Path) -> None:
-    args = _asked(two_shapes, tmp_path, "--seeds", "2", "--jobs", "1")
-    first, second = jobs_of(args, make_plan(args))
-    trainer = make_trainer(first)
-    for _ in range(30):
-        trainer.step()
-    trainer.save(first.checkpoint)
-    args.resume = True
-    first, second = jobs_of(args, make_plan(args))
-    assert [make._left(job) for job in (first, second)] == [10, 40]
-    trainer.ended = True
-    trainer.iteration = 35
-    trainer.save(first.checkpoint)
-    assert make._left(first) == 0, "it ended before its last iteration"
-    trainer.iteration = 40
-    trainer.save(first.checkpoint)
-    assert make._expected_s(args, make_plan(args)) > 0.0, "the second one has all to do"
-    assert make._longest([10, 40, 20, 5], 1) == 75
-    assert make._longest([10, 40, 20, 5], 2) == 40
-    assert make._longest([10, 40], 4) == 40
 
 
 def test_there_is_no_estimate_for_a_cluster(
     two_shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    args = _asked(two_shapes, tmp_path, "--scheduler", "tcp://nowhere:1")
+    args = asked(two_shapes, tmp_path, "--scheduler", "tcp://nowhere:1")
     plan, steps = make_plan(args), Steps(STEPS, "train")
     make._check(args, plan, cost.check(plan.dimensions, len(plan.task.labels)), False, steps)
     assert steps.left() == ""
-    here = _asked(two_shapes, tmp_path)
+    here = asked(two_shapes, tmp_path)
     make._check(here, plan, cost.check(plan.dimensions, len(plan.task.labels)), False, steps)
     assert "left" in steps.left()
 

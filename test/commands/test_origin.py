@@ -10,8 +10,9 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.origin import model_with_id, own_shapes, shapes_or_own, without_a_dash
+from tilenca.commands.origin import model_with_id, own_shapes, shapes_or_own, why_wrong, without_a_dash
 from tilenca.model.file import Model, load_model
+from tilenca.shapes.file import load_task, shape_table
 
 DIGITS = load_model(paths.DEFAULT_MODEL)
 
@@ -100,3 +101,14 @@ def test_a_model_without_a_dash_says_so() -> None:
     assert without_a_dash(DIGITS) is None
     letters = load_model(paths.MODELS / "letters")
     assert "has no class for other drawings" in str(without_a_dash(letters))
+
+
+def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tmp_path: Path) -> None:
+    model, own = DIGITS, load_task(paths.DEFAULT_SHAPES)
+    assert "was made of this file, and does not hold it" in why_wrong(model, own)
+    (tmp_path / "mine.toml").write_text(shape_table("4", ["#.", "##"]), encoding="utf-8")
+    told = why_wrong(model, load_task(tmp_path / "mine.toml"))
+    assert told.startswith("model D968 was made of digits.toml digits-3x3.toml, and takes these for")
+    assert f"tilenca make {tmp_path / 'mine.toml'}; more reasons: docs/how-to/debug.md" in told
+    without = why_wrong(replace(model, metadata={}), own)
+    assert without.startswith("model D968 was made of other drawings")

@@ -30,6 +30,7 @@ def test_every_schema_is_one_and_its_example_fits(name: str) -> None:
     schema = schemas()[name]
     Draft202012Validator.check_schema(schema)
     assert schema["$id"] == f"{name}.json"
+    assert schema["examples"]
     for example in schema["examples"]:
         assert fits(name, example)
     assert f"\n{name}\n{'-' * len(name)}\n" in f"\n{rendered()}", "the reference has it"
@@ -76,12 +77,14 @@ def test_a_model(
     assert fits("export", printed(capsys, "export", *mine[:2], *out))
     assert fits("export", printed(capsys, "export", *mine[:2], *out, "--check"))
     assert fits("export-plan", printed(capsys, "export", "--plan"))
-    assert fits("metrics", json.loads((trained_model / "metrics.json").read_text(encoding="utf-8")))
+    for name in ("model", "metrics", "sessions"):
+        assert fits(name, json.loads((trained_model / f"{name}.json").read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize("model", sorted(path.parent.name for path in paths.MODELS.glob("*/metrics.json")))
-def test_the_measurements_that_ship(model: str) -> None:
-    assert fits("metrics", json.loads((paths.MODELS / model / "metrics.json").read_text(encoding="utf-8")))
+def test_the_models_that_ship_and_their_measurements(model: str) -> None:
+    for name in ("model", "metrics"):
+        assert fits(name, json.loads((paths.MODELS / model / f"{name}.json").read_text(encoding="utf-8")))
 
 
 def test_emulated_tiles(firmware: Path, capsys: pytest.CaptureFixture[str]) -> None:

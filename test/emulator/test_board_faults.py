@@ -1,5 +1,6 @@
 """Boards made faulty by `--fault`, as served ones are, and what the board test says of each."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -7,7 +8,7 @@ import pytest
 
 from support.firmware import board_test_image
 from tilenca.base.errors import UsageError
-from tilenca.emulator.board_faults import parse
+from tilenca.emulator.board_faults import EXAMPLES, VALUES, parse
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.serve import STOCK_BOOTLOADER
 from tilenca.shapes.file import Shape
@@ -86,7 +87,12 @@ def test_a_plug_hands_back_what_a_clock_that_is_off_has_sent() -> None:
 def test_a_mistyped_fault_says_what_it_takes(text: str, fact: str) -> None:
     with pytest.raises(UsageError, match=fact) as refused:
         parse(text)
-    assert "\n" not in str(refused.value)
+    assert re.search(r"^[^\n]*; for example [a-z]+[=@][^\n]*$", str(refused.value))
+
+
+def test_every_kind_has_an_example_that_is_one() -> None:
+    assert EXAMPLES.keys() == VALUES.keys()
+    assert all(parse(text).kind == kind for kind, text in EXAMPLES.items())
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def test_a_cable_cut_for_a_while_costs_the_frames_of_that_while(capsys: pytest.C
 def test_a_tile_without_power_is_not_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = emulate(capsys, *SECONDS, "--fault", "off@5:1")
     assert status == 0
-    assert "1: all 4 tiles show 1" in out
+    assert "1: all 4 tiles with power show 1" in out
     off = report(capsys, *SECONDS, "--fault", "remove@5:1")["tiles"][4]
     assert (off["shown"], off["updates"]) == ("", 8)
 
@@ -113,14 +113,15 @@ BROKEN_OFF = (("=", "loss="), ("@", "reset@1:-1"), ("@", "off@1:0-"), ("@", "cut
         ("loss=nan", "'nan' is no number"),
         ("flip=1.5", "flip is 0 to 1"),
         ("cut", "cut needs a place"),
-        ("cut@1-3", "no cable there"),
-        ("cut@9", "no tile '9'; they are 1 to 5"),
+        ("cut@1-3", "no cable there; tile 1 has S to tile 2"),
+        ("cut@9", "no tile '9'; they are 1 to 5, from left to right and top to bottom"),
         ("off@0:1", "no tile '0'"),
         ("loss=1@1N", "no cable there"),
         ("cut@1-2:3-2", "it ends before it begins"),
         ("reset@1:1-2", "reset has no end"),
         ("cut@1-2:soon", "'soon' is no time in seconds"),
         ("losses=1", "it begins with none of loss, flip, delay"),
+        ("resat@1", "it begins with none of loss, flip, delay"),
         *((spec, f"after {spec.partition(mark)[0]} comes [=VALUE]") for mark, spec in BROKEN_OFF),
     ],
 )
@@ -128,6 +129,9 @@ def test_a_fault_that_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], 
     status, out, err = emulate(capsys, "--fault", spec)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"--fault '{spec}': {fact}" in err
+    assert "; for example " in err
+    if fact.startswith("no "):
+        assert "tilenca: shape '1': --fault" in err, "another shape may have that tile or cable"
 
 
 def test_a_fault_waits_for_its_time_where_a_tile_is_halted_before() -> None:
@@ -143,3 +147,11 @@ def test_a_fault_waits_for_its_time_where_a_tile_is_halted_before() -> None:
         array[0].resume()
         faults.run(0.4)
         assert not array[1].powered
+
+
+def test_a_fault_that_was_to_begin_after_the_end_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, err = emulate(capsys, *SECONDS, "--fault", "off@5:1", "--fault", "loss=1:60-61")
+    assert status == 0
+    assert err.count("had not begun") == 1
+    assert "--fault 'loss=1:60-61' had not begun when shape '1' ended after" in err
+    assert "with --seconds 62" in err

@@ -6,7 +6,9 @@ from typing import Any
 import pytest
 
 from tilenca.base import paths
+from tilenca.base.shipped import model_names
 from tilenca.evaluation.card import render_card
+from tilenca.evaluation.suites import recorded_aims
 from tilenca.model.file import Model, load_model
 
 
@@ -74,3 +76,14 @@ def test_a_run_that_ended_early_and_weights_that_were_cut_are_told(
     assert "since all targets held" not in plain
     assert "of iteration" not in plain
     assert "were cut" not in plain
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_the_cards_of_all_models_have_the_targets_of_their_recipes(name: str) -> None:
+    folder = paths.MODELS / name
+    model, metrics = load_model(folder), json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    assert (folder / "README.md").read_text(encoding="utf-8") == render_card(model, metrics)
+    aimed = [row for row in metrics["rows"] if row["target"] is not None]
+    assert metrics["targets_held"] == f"{sum(row['holds'] for row in aimed)} of {len(aimed)}"
+    asked = {row["target"] is not None for row in metrics["rows"] if row["key"] == "one answer"}
+    assert asked == {recorded_aims(model).agreeing}

@@ -27,10 +27,13 @@ def test_short_measurements_run_on_the_clocks_only_and_change_everything_at_once
     suite = replace(
         suite, sizes=suite.sizes[:1], unknown=suite.unknown[:1], damaged=suite.damaged[:1], larger=()
     )
-    short, full = (
-        [row.name for row in rows(Evaluator(FastEngine(MODEL), suite, 1, 1))]
+    measured = [
+        list(rows(Evaluator(FastEngine(MODEL), suite, 1, 1)))
         for rows in (Evaluator.short_rows, Evaluator.rows)
-    )
+    ]
+    targets = [{(row.name, row.steps): (row.target, row.floor) for row in rows} for rows in measured]
+    assert targets[0].items() <= targets[1].items(), "training and the last measurement have one aim"
+    short, full = ([row.name for row in rows] for rows in measured)
     left_out = [name for name in full if name not in short]
     assert {name.split(", ")[-1] for name in left_out} == {
         "the paper's listing",

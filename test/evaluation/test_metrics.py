@@ -10,7 +10,7 @@ from support.measurements import row
 from tilenca.base import paths
 from tilenca.evaluation.card import render_card
 from tilenca.evaluation.cases import Case
-from tilenca.evaluation.metrics import Runs, Target, measure, median_interval, wilson
+from tilenca.evaluation.metrics import Runs, Target, least_shares, measure, median_interval, wilson
 from tilenca.evaluation.suites import Aims, make_suite
 from tilenca.evaluation.validation import validate
 from tilenca.model.file import Model, load_model
@@ -43,6 +43,13 @@ def test_a_row_holds_when_its_share_and_its_worst_drawing_reach_the_target() -> 
     assert not missed.holds
     assert missed.shortfall == pytest.approx(0.1)
     assert missed.as_json()["holds"] is False
+
+
+def test_the_smallest_share_of_a_kind_is_that_of_its_rows_with_a_target() -> None:
+    aim = Target(0.9)
+    rows = [row(0.1), row(0.95, aim), row(0.92, aim), row(0.2)]
+    assert least_shares(rows) == {"drawings": 0.92}
+    assert least_shares([row(0.3), row(0.2)]) == {"drawings": 0.2}, "without a target all of them count"
 
 
 def test_the_same_seed_measures_the_same_and_the_card_shows_it(model: Model) -> None:

@@ -1,9 +1,13 @@
 """What a model is asked: what training never saw, and what it was trained for."""
 
+from dataclasses import asdict, replace
 from pathlib import Path
 
+import pytest
+
 from tilenca.base import paths
-from tilenca.evaluation.suites import MOST_DRAWN, Aims, Suite, make_suite
+from tilenca.evaluation.suites import MOST_DRAWN, Aims, Suite, make_suite, recorded_aims
+from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_training_task
 from tilenca.shapes.file import UNKNOWN, shape_table
 from tilenca.shapes.stretch import Rows, smallest
@@ -87,6 +91,21 @@ def test_a_tile_is_missing_at_every_size_once_in_new_pairs_and_once_in_others() 
         assert new.aimed
         assert all(split_of(shape.rows) == TRAINED for shape in old.drawings.shapes)
         assert all(split_of(shape.rows) == LAST for shape in new.drawings.shapes)
+
+
+@pytest.mark.parametrize("agreeing", [False, True])
+def test_one_answer_on_any_drawing_has_a_target_only_where_the_training_aims_at_it(agreeing: bool) -> None:
+    task, sizes = load_training_task([paths.DEFAULT_SHAPES], 1.5, 20)
+    suite = make_suite(task, sizes, task.labels, Aims(1.5, agreeing=agreeing), seed=1)
+    assert [case.aimed for case in suite.agreeing] == [agreeing] * 2
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_a_model_records_the_aims_of_its_recipe(name: str) -> None:
+    recipe, model = RECIPES[name], load_model(paths.DEFAULT_MODEL)
+    size = replace(model.dimensions, directions=4 if recipe.directions else 0)
+    model = replace(model, dimensions=size, metadata={"recipe": asdict(recipe)})
+    assert recorded_aims(model) == aims_of(recipe)
 
 
 def test_of_a_file_with_very_many_drawings_some_are_asked_by_the_seed(tmp_path: Path) -> None:

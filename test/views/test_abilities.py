@@ -6,8 +6,8 @@ from tilenca.base import paths
 from tilenca.views.abilities import QUESTIONS, Targets, abilities, targets_by_kind
 
 
-def row(key: str, holds: bool, target: float | None = 0.9) -> dict[str, object]:
-    return {"key": key, "holds": holds, "target": target}
+def row(key: str, holds: bool, target: float | None = 0.9, share: float = 0.95) -> dict[str, object]:
+    return {"key": key, "holds": holds, "target": target, "share": share}
 
 
 def test_a_kind_with_one_missed_target_is_not_done_well_enough() -> None:
@@ -28,5 +28,9 @@ def test_every_kind_of_every_shipped_model_has_words() -> None:
 
 
 def test_targets_are_counted_by_kind() -> None:
-    rows = [row("sizes", True), row("sizes", False, 0.5), row("drawings", True), row("unknown", True, None)]
-    assert targets_by_kind({"rows": rows}) == {"sizes": Targets(1, 2, 0.5), "drawings": Targets(1, 1, 0.9)}
+    rows = [row("sizes", True), row("sizes", False, 0.5, 0.4), row("drawings", True)]
+    rows.append(row("unknown", True, None, 0.1))
+    assert targets_by_kind({"rows": rows}) == {
+        "sizes": Targets(1, 2, 0.5, 0.4),
+        "drawings": Targets(1, 1, 0.9, 0.95),
+    }

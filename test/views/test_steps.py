@@ -164,3 +164,14 @@ def test_the_clock_does_not_draw_a_step_as_at_work_after_its_end() -> None:
     assert bars.notes[-1] == "40 iterations"
     steps.move("train", "39 of 40", 0.9)
     assert bars.notes[-1] == "40 iterations", "a late word of it"
+
+
+def test_a_training_that_ended_early_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    steps = Steps(NAMES, "train")
+    steps.begin("train")
+    with steps.training_views("train", "measure").training((1, 2), 200) as tell:
+        tell(Progress(1, 100, 0.1, 1.0, (8, 8, 0.0)))
+        tell(Progress(2, 50, 0.1, 0.5, (3, 8, 0.1)))
+    assert capsys.readouterr().err.endswith(
+        ": 100 iterations of 200, since all targets held; 50 iterations\n"
+    )

@@ -31,7 +31,7 @@ def test_on_a_terminal_every_seed_has_a_bar_with_its_loss_and_targets(
     assert last.keys() == {"5", "6"}
     assert "200/400" in last["5"]
     assert "loss 0.1250  all right 75.0%  50/s" in last["5"]
-    assert "  3 of 8 targets met, 0.062 short" in last["5"]
+    assert "  on the way 3 of 8 targets met, 0.062 short" in last["5"]
     assert "0/400" in last["6"]
     assert "loss" not in last["6"], "it has not begun"
     assert not any("seed 5:" in line for line in lines), "a plain line among the bars"
@@ -51,8 +51,8 @@ def test_the_time_left_is_by_the_rate_of_this_run_not_of_the_one_it_goes_on_from
     assert first == "seed 5: 1400 of 2000 iterations; all tiles right on 0% of the drawings"
     assert lines == [
         "seed 5: 1500 of 2000 iterations; all tiles right on 90% of the drawings; about 5 min left",
-        "seed 5: 1950 of 2000 iterations; all tiles right on 95% of the drawings; 11 of 14 targets met; "
-        "less than a minute left, less if the targets hold early",
+        "seed 5: 1950 of 2000 iterations; all tiles right on 95% of the drawings; on the way 11 of 14 "
+        "targets met; less than a minute left, less if the targets hold early",
     ]
 
 
@@ -68,7 +68,7 @@ def test_without_a_terminal_each_seed_tells_a_line_a_minute_and_its_end(
     assert said.out == ""
     told = [line.split()[1:3] for line in said.err.splitlines()]
     assert told == [["5:", "1"], ["5:", "401"], ["5:", "801"], ["5:", "1000"], ["6:", "1000"]]
-    assert said.err.endswith("; 8 of 8 targets met\n")
+    assert said.err.endswith("; on the way 8 of 8 targets met\n")
 
 
 def test_a_measurement_tells_where_its_rows_will_be_and_how_many_there_are(

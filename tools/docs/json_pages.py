@@ -41,6 +41,8 @@ def _keys(schema: dict[str, Any], before: str = "") -> Iterator[tuple[str, dict[
     """The keys of a schema and of all that is in it, as paths; what another file has is not repeated."""
     for part in (*schema.get("anyOf", ()), *schema.get("$defs", {}).values()):
         yield from _keys(part, before)
+    if not before and schema.get("type") == "array":
+        yield from _keys(schema["items"], "[].")
     for key, part in schema.get("properties", {}).items():
         yield f"{before}{key}", part
         items = part.get("items", {})

@@ -26,6 +26,7 @@ from tilenca.commands.emulate_watch import watch_all
 from tilenca.commands.origin import model_with_id, own_shapes, without_a_dash
 from tilenca.commands.own_firmware import image_of
 from tilenca.emulator.experiment import Emulation, EmulationSettings
+from tilenca.emulator.fault_spec import FaultError
 from tilenca.emulator.greeting import greeting, is_board_test, settings_of
 from tilenca.emulator.lag import Lag
 from tilenca.emulator.serve import STOCK_BOOTLOADER, serve
@@ -153,7 +154,10 @@ def _prepare(args: argparse.Namespace) -> _Run:
 
     def lay_out(shape: Shape) -> Emulation:
         most = None if args.updates else updates_for(shape)
-        return Emulation(shape, task.labels, image, replace(settings, most_updates=most), defaults)
+        try:
+            return Emulation(shape, task.labels, image, replace(settings, most_updates=most), defaults)
+        except FaultError as error:
+            raise UsageError(f"shape '{shape.name}': {error}") from error
 
     return _Run(task, shapes, lay_out, told)
 

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -14,6 +15,7 @@ from rich.console import Console
 
 from tilenca.base.stdio import warn
 from tilenca.commands.emulate_states import StateCheck
+from tilenca.commands.origin import why_wrong
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
 from tilenca.emulator.eeprom_files import save_eeprom
 from tilenca.emulator.experiment import Emulation
@@ -22,11 +24,12 @@ from tilenca.evaluation.cases import steps_for
 from tilenca.fleet.recording import Recorder, as_record
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.file import Shape, Task
-from tilenca.views.emulated import judge, mismatch, take_picture, verdict
+from tilenca.views.emulated import WRONG, judge, mismatch, take_picture, verdict
 from tilenca.views.progress import Tell, show_progress
 from tilenca.views.tiles import Picture, beside
 
 PLAIN_WIDTH = 80
+AFTERWARDS_S = 2  # that the tiles of an example have after a fault
 
 # Lays out one shape in tiles.
 LayOut = Callable[[Shape], Emulation]
@@ -58,13 +61,28 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
         started: when, on the monotonic clock.
     """
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
+    notes += _too_late(emulation)
     expected = 0 if args.foreign else updates_for(emulation.shape)
-    if remedy := mismatch(emulation, task):
+    if args.own_model is None and (remedy := mismatch(emulation, task)):
         notes.append(remedy)
         expected = 0  # more time would not help
-    report = emulation.report(time.monotonic() - started) | {"verdict": judge(emulation, expected)}
+    judged = judge(emulation, expected)
+    if judged == WRONG and args.own_model is not None and not (args.foreign or args.fault):
+        notes.append(why_wrong(args.own_model, task))
+    report = emulation.report(time.monotonic() - started) | {"verdict": judged}
     words = verdict(emulation, expected, args.verbose)
     return EmulationResult(report, take_picture(emulation), words, tuple(notes))
+
+
+def _too_late(emulation: Emulation) -> Iterator[str]:
+    """A note for each fault that was to begin after the end of the run."""
+    for fault in emulation.settings.faults:
+        if fault.from_s >= emulation.array.time_s:
+            seconds = math.ceil(fault.from_s) + AFTERWARDS_S
+            yield (
+                f"note: --fault '{fault.text}' had not begun when shape '{emulation.shape.name}' ended after "
+                f"{emulation.array.time_s:.1f} s; run on, with --seconds {seconds}"
+            )
 
 
 def updates_for(shape: Shape) -> int:

@@ -6,13 +6,12 @@ import json
 import shlex
 import shutil
 import subprocess
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from textwrap import fill
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -22,12 +21,14 @@ from tilenca.base.stdio import warn
 from tilenca.commands import emulate
 from tilenca.commands.arguments import Parser
 from tilenca.commands.emulate_runs import EmulationResult
+from tilenca.commands.make_estimate import building_s, emulating_s, measuring_s, pace_of, training_s
 from tilenca.commands.origin import without_a_dash
 from tilenca.commands.own_firmware import build_beside
 from tilenca.commands.train import judged
 from tilenca.commands.train_options import add_training_arguments
 from tilenca.commands.train_plan import TrainingPlan, check_out, doubts, make_plan
-from tilenca.commands.train_steps import at_once, jobs_of, train_model
+from tilenca.commands.train_steps import last_suite, train_model
+from tilenca.evaluation.suites import Suite
 from tilenca.model import cost
 from tilenca.model.file import Model, checkpoint_path, checkpoints, load_model
 from tilenca.training.device import check_device
@@ -36,15 +37,8 @@ from tilenca.views.abilities import abilities
 from tilenca.views.progress import Tell
 from tilenca.views.steps import Steps, show_steps
 
-if TYPE_CHECKING:
-    from tilenca.training.runner import Job
-
 CHECK, TRAIN, MEASURE, BUILD, EMULATE = STEPS = "check", "train", "measure", "build", "emulate"
-# How long steps take on two cores, in round numbers, until their own pace says it better.
-MEASURE_S, BUILD_S, EMULATE_S = 40.0, 30.0, 10.0
-MEASURED_RUNS, MEASURED_TILES = 100, 50  # of MEASURE_S; EMULATE_S is for so many tiles, too
 NOTE_WIDTH = 79
-TIMED_STEPS = 3  # iterations that are timed before the training begins
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,8 +71,8 @@ def run(args: argparse.Namespace) -> int:
         _check_unfinished(args, plan)
         check_out(args, plan)
     with show_steps(STEPS, TRAIN) as steps:
-        _check(args, plan, fits, done, steps)
-        status = 0 if done else _train(args, plan, steps)
+        suite = _check(args, plan, fits, done, steps)
+        status = 0 if done else _train(args, plan, suite, steps)
         model = load_model(args.out)
         steps.begin(BUILD)
         image = build_beside(model, args.out, args.force, quiet=True)
@@ -112,33 +106,40 @@ def _check_unfinished(args: argparse.Namespace, plan: TrainingPlan) -> None:
         )
 
 
-def _check(args: argparse.Namespace, plan: TrainingPlan, fits: cost.Fit, done: bool, steps: Steps) -> None:
-    """Says what to know of the drawings, and how long all of it will take."""
+def _check(
+    args: argparse.Namespace, plan: TrainingPlan, fits: cost.Fit, done: bool, steps: Steps
+) -> Suite | None:
+    """Says what to know of the drawings, and how long all will take; returns what the model is asked."""
     steps.begin(CHECK)
     for note in doubts(plan):
         warn(note)
     if not fits.fits_period:
         warn(str(fits))
-    tiles = int(plan.task.sizes.sum()) / MEASURED_TILES
-    if done or args.scheduler is None:  # nobody knows how fast a cluster is
-        steps.expect(BUILD, BUILD_S)
-        steps.expect(EMULATE, EMULATE_S * max(1.0, tiles))
-        if not done:
-            steps.expect(MEASURE, MEASURE_S * max(1.0, tiles) * plan.validation_runs / MEASURED_RUNS)
-            steps.expect(TRAIN, _expected_s(args, plan))
+    suite = None
+    steps.move(CHECK, "estimating how long all of it takes")
+    if done:
+        pace = pace_of(load_model(args.out), plan.task)
+    elif args.scheduler is None:  # nobody knows how fast a cluster is
+        train_s, untrained = training_s(args, plan)
+        pace, suite = pace_of(untrained, plan.task), last_suite(args, plan)
+        steps.expect(TRAIN, train_s)
+        steps.expect(MEASURE, measuring_s(untrained, suite, plan.validation_runs, pace))
+    if done or args.scheduler is None:
+        steps.expect(BUILD, building_s(args, pace))
+        steps.expect(EMULATE, emulating_s(plan, pace))
     labels = plan.task.labels
     steps.end(CHECK, f"{len(plan.task)} drawings of {len(labels)} classes: {' '.join(labels)}")
     if done:
         steps.end(TRAIN, "trained on this file before; --force trains anew")
         steps.end(MEASURE, f"{args.out / 'README.md'}")
+    return suite
 
 
-def _train(args: argparse.Namespace, plan: TrainingPlan, steps: Steps) -> int:
+def _train(args: argparse.Namespace, plan: TrainingPlan, suite: Suite | None, steps: Steps) -> int:
     """Trains and measures a model; 1 where the folder kept a better one."""
     steps.begin(TRAIN)
-    made = train_model(
-        args, plan, steps.training_views(TRAIN, MEASURE), "to go on, run the same command again"
-    )
+    go_on = "to go on, run the same command again"
+    made = train_model(args, plan, steps.training_views(TRAIN, MEASURE), go_on, suite)
     steps.end(MEASURE, f"{made.metrics['targets_held']} targets held")
     return 0 if made.folder == args.out else 1
 
@@ -175,6 +176,7 @@ def _tell(args: argparse.Namespace, model: Model, metrics: dict[str, Any]) -> No
         print(fill(note, NOTE_WIDTH, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
     for what, then in (
         ("next, watch them", f"tilenca emulate --model {place} --watch"),
+        ("pull a tile", f"tilenca emulate --model {place} --seconds 5 --fault off@1:3"),
         ("for real tiles", f"tilenca flash --model {place}"),
         ("all measurements", str(args.out / "README.md")),
         ("the digits again", "tilenca emulate"),
@@ -253,47 +255,3 @@ def _seeds(metadata: Mapping[str, Any]) -> tuple[int, ...]:
         first, count = (int(words[words.index(option) + 1]) for option in ("--seed", "--seeds"))
         return tuple(range(first, first + count))
     return ()
-
-
-def _expected_s(args: argparse.Namespace, plan: TrainingPlan) -> float:
-    """How long the training takes at most, from some iterations on this machine.
-
-    Raises:
-        UsageError: a checkpoint is of no use.
-    """
-    from tilenca.training.runner import make_trainer
-
-    jobs = jobs_of(args, plan)
-    left = [_left(job) for job in jobs]
-    if max(left) <= TIMED_STEPS:
-        return 0.0
-    trainer = make_trainer(jobs[left.index(max(left))])
-    trainer.step()  # the first one takes longer
-    began_s = time.perf_counter()
-    for _ in range(TIMED_STEPS):
-        trainer.step()
-    each_s = (time.perf_counter() - began_s) / TIMED_STEPS
-    return each_s * _longest(left, at_once(args, plan))
-
-
-def _left(job: "Job") -> int:
-    """How many iterations there are still to do.
-
-    Raises:
-        UsageError: the checkpoint is of no use.
-    """
-    from tilenca.training.trainer import trained_at
-
-    iterations = job.config.recipe.iterations
-    if not (job.resume and job.checkpoint.exists()):
-        return iterations
-    trained = trained_at(job.checkpoint, job.config)
-    return 0 if trained.done else iterations - trained.iteration
-
-
-def _longest(jobs: Sequence[int], at_once: int) -> int:
-    """When the last job ends, if so many run at once and each begins as soon as there is room."""
-    ends = [0] * at_once
-    for job in jobs:
-        ends[ends.index(min(ends))] += job
-    return max(ends)

@@ -10,7 +10,7 @@ from tilenca.base.errors import UsageError
 from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.model.file import Model, load_model
-from tilenca.shapes.file import UNKNOWN
+from tilenca.shapes.file import UNKNOWN, Task
 
 NEAR = 3  # folders above a model in which its shape files are looked for
 
@@ -84,6 +84,23 @@ def _descriptions() -> Iterator[Path]:
         roots += [paths.PROJECT / "models", paths.PROJECT / "build" / "models"]
     for root in dict.fromkeys(roots):
         yield from sorted(root.glob("*/model.json"))
+
+
+def why_wrong(model: Model, task: Task) -> str:
+    """What to look at where tiles run the right model and show another label than the file says."""
+    named = _hashes(model)
+    sha256 = hashlib.sha256(task.path.read_bytes()).hexdigest()
+    id_text = f"{model.model_id:04X}"
+    ships_with_it = task.path.name in named and task.path.resolve().is_relative_to(paths.SHAPES.resolve())
+    if sha256 in named.values() or ships_with_it:
+        made = f"model {id_text} was made of this file, and does not hold it; a better one: --recipe full"
+    else:
+        files = " ".join(named) or "other drawings"
+        made = (
+            f"model {id_text} was made of {files}, and takes these for something else; one of these: "
+            f"tilenca make {task.path}"
+        )
+    return f"{made}; more reasons: docs/how-to/debug.md"
 
 
 def without_a_dash(model: Model) -> str | None:

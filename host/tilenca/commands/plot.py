@@ -95,7 +95,8 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
     for name in FILM_OPTIONS:
         if getattr(args, name) is not None:
             raise UsageError(f"--{name} is of a film; add --film FILE.png or FILE.gif")
-    from tilenca.views import plots
+    from tilenca.views.plots import unwritable
+    from tilenca.views.training_plot import plot_history
 
     model = load_model(args.model)
     columns, rows = read_history(args.model / HISTORY_FILE)
@@ -108,9 +109,9 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise plots.unwritable(out, error) from error
+        raise unwritable(out, error) from error
     title = f"Training of model {model.model_id:04X}"
-    plots.plot_history(rows, path, columns, title, _targets(args.model / METRICS_FILE))
+    plot_history(rows, path, columns, title, _targets(args.model / METRICS_FILE))
     return {"file": str(path), "model": f"{model.model_id:04X}", "rows": len(rows)}
 
 

@@ -2,7 +2,9 @@
 
 import argparse
 import json
+import os
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,7 +12,7 @@ from tilenca.base.errors import UsageError
 from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.commands.plot import HISTORY_FILE, read_history
-from tilenca.model.file import checkpoints, load_model
+from tilenca.model.file import CHECKPOINTS, checkpoints, load_model
 from tilenca.training.sessions import FILE, Session, sessions_of
 from tilenca.views.table import table
 
@@ -69,12 +71,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _folders(roots: list[Path]) -> Iterator[Path]:
-    """The folders at or below the roots in which something was trained, sorted."""
-    marks = {path.parent for root in roots for path in root.rglob("model.json")}
-    marks |= {path.parent for root in roots for path in root.rglob("checkpoint-*.pt")}
-    marks |= {path.parent for root in roots for path in root.rglob(FILE)}
-    yield from sorted(marks)
+def _folders(roots: list[Path]) -> list[Path]:
+    """The folders at or below the roots in which something was trained, sorted; each root is walked once."""
+    found = set()
+    for root in roots:
+        for place, _, names in os.walk(root):
+            if any(name in ("model.json", FILE) or fnmatch(name, CHECKPOINTS) for name in names):
+                found.add(Path(place))
+    return sorted(found)
 
 
 def _about(folder: Path) -> dict[str, Any] | None:

@@ -14,7 +14,7 @@ from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.train_cluster import train_on_cluster
 from tilenca.commands.train_plan import TrainingPlan, usual_channels
-from tilenca.evaluation.suites import make_suite
+from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import Model, checkpoints
 from tilenca.shapes.variant import CHOOSING
 from tilenca.training.recipe import aims_of
@@ -47,7 +47,13 @@ class NewModel:
     metrics: dict[str, Any]
 
 
-def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, go_on: str) -> NewModel:
+def train_model(
+    args: argparse.Namespace,
+    plan: TrainingPlan,
+    views: TrainingViews,
+    go_on: str,
+    suite: Suite | None = None,
+) -> NewModel:
     """Trains, measures, quantises, writes.
 
     Args:
@@ -55,6 +61,7 @@ def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingVie
         plan: of these arguments.
         views: what a person sees meanwhile.
         go_on: after an interrupt, how to go on; the end of a sentence.
+        suite: `last_suite`, where it was made before.
 
     Raises:
         InterruptedRunError: Ctrl-C; what was trained is in checkpoints.
@@ -66,9 +73,9 @@ def train_model(args: argparse.Namespace, plan: TrainingPlan, views: TrainingVie
             jobs = _train(args, plan, views, session.began[-1])
         except (InterruptedRunError, KeyboardInterrupt) as error:
             raise _interrupted(args, str(error) or "while training", go_on) from None
-        seed = SUITE_SEED + args.seed
         try:
-            result = _measured(plan, _best(jobs, args.seed), seed, metadata, args.out, views)
+            trained, suite = _best(jobs, args.seed), suite or last_suite(args, plan)
+            result = _measured(plan, trained, suite, _suite_seed(args), metadata, args.out, views)
         except KeyboardInterrupt:
             raise _interrupted(args, "while measuring the trained model", go_on) from None
 
@@ -135,10 +142,24 @@ def _metadata(args: argparse.Namespace) -> dict[str, object]:
     }
 
 
+def last_suite(args: argparse.Namespace, plan: TrainingPlan) -> Suite:
+    """What the finished model is asked; making it takes seconds.
+
+    Its drawings and runs are other ones than those that decide when to stop, and which seed is best.
+    """
+    labels = plan.task.labels
+    return make_suite(plan.task, plan.sizes, labels, aims_of(plan.recipe), _suite_seed(args))
+
+
+def _suite_seed(args: argparse.Namespace) -> int:
+    return SUITE_SEED + int(args.seed)
+
+
 def _measured(
     plan: TrainingPlan,
     trained: "Trained",
-    suite_seed: int,
+    suite: Suite,
+    seed: int,
     metadata: dict[str, object],
     out: Path,
     views: TrainingViews,
@@ -148,8 +169,8 @@ def _measured(
     Args:
         plan: of the training.
         trained: the best seed.
-        suite_seed: other runs and other random drawings than those that decided when to stop, and which seed
-            is best.
+        suite: what the model is asked.
+        seed: of the runs.
         metadata: of the model.
         out: the model's folder.
         views: what a person sees meanwhile.
@@ -160,9 +181,8 @@ def _measured(
     from tilenca.training.trainer import model_of
 
     model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
-    suite = make_suite(plan.task, plan.sizes, model.labels, aims_of(plan.recipe), suite_seed)
     with views.measuring(str(out / "README.md")) as tell:
-        metrics = validate(FastEngine(model), suite, plan.validation_runs, suite_seed, tell)
+        metrics = validate(FastEngine(model), suite, plan.validation_runs, seed, tell)
     metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
     metrics["best_iteration"] = trained.best_iteration
     return Result(model, metrics, trained.history, trained.checks)
@@ -171,7 +191,7 @@ def _measured(
 def _draw_history(where: Path, result: "Result") -> None:
     from tilenca.training.results import history_table
     from tilenca.views.abilities import targets_by_kind
-    from tilenca.views.plots import plot_history
+    from tilenca.views.training_plot import plot_history
 
     if result.history:
         columns, rows = history_table(result)

@@ -15,8 +15,9 @@ from functools import partial
 
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
+from tilenca.base.suggest import did_you_mean
 from tilenca.emulator.array import Array
-from tilenca.emulator.fault_spec import KINDS, FaultSpec
+from tilenca.emulator.fault_spec import EXAMPLE, KINDS, FaultError, FaultSpec
 from tilenca.emulator.fault_spec import parse as parse_fault
 from tilenca.emulator.faults import Faults
 from tilenca.emulator.library import call, new
@@ -29,6 +30,14 @@ VALUES = {
     "joined": (rf"{PIN}\+{PIN}", "two pins, such as PH4+PH3"),
     "led": (r"([1-4])", "a link LED, 1 to 4"),
     "plug": ("", "no value"),
+}
+EXAMPLES = {
+    "high": "high=PE3@7",
+    "low": "low=PE3@7:2-3",
+    "joined": "joined=PH4+PH3@7",
+    "led": "led=3@7",
+    "resonator": "resonator=2.5@7",
+    "plug": "plug@1N",
 }
 PIN_KINDS = ("high", "low", "joined")
 ALL_KINDS = (*KINDS, *VALUES)
@@ -61,9 +70,9 @@ class BoardFault:
     from_s: float
     to_s: float | None
 
-    def refuse(self, fact: str) -> UsageError:
+    def refuse(self, fact: str) -> FaultError:
         """The error for this one."""
-        return UsageError(f"--fault '{self.text}': {fact}")
+        return FaultError(f"--fault '{self.text}': {fact}; for example {EXAMPLES[self.kind]}")
 
 
 def parse(text: str) -> FaultSpec | BoardFault:
@@ -77,14 +86,18 @@ def parse(text: str) -> FaultSpec | BoardFault:
     if kind in KINDS:
         return parse_fault(text)
     if kind not in VALUES:
-        raise UsageError(f"--fault '{text}': it begins with none of {', '.join(ALL_KINDS)}")
+        meant = did_you_mean(kind, ALL_KINDS)
+        raise UsageError(
+            f"--fault '{text}': it begins with none of {', '.join(ALL_KINDS)}{meant}; for example {EXAMPLE}"
+        )
     pattern, wanted = VALUES[kind]
     match = SHAPE.fullmatch(text)
     value = match and re.fullmatch(pattern, match[2] or "")
     if match is None or value is None or (kind == "plug") != bool(match[4]):
         place = "@TILE and a side" if kind == "plug" else "@TILE"
         raise UsageError(
-            f"--fault '{text}': {kind} takes {wanted}, then {place}, then [:FROM[-TO]] in seconds"
+            f"--fault '{text}': {kind} takes {wanted}, then {place}, then [:FROM[-TO]] in seconds; "
+            f"for example {EXAMPLES[kind]}"
         )
     from_s, to_s = float(match[5] or 0), float(match[6]) if match[6] else None
     fault = BoardFault(text, kind, value.groups(), int(match[3]), match[4], from_s, to_s)
@@ -113,7 +126,7 @@ class BoardFaults(Faults):
 
     def _add_board(self, fault: BoardFault) -> None:
         if not 1 <= fault.tile <= len(self.array):
-            raise fault.refuse(f"no tile '{fault.tile}'; they are 1 to {len(self.array)}")
+            raise fault.refuse(self.no_tile(str(fault.tile)))
         if fault.kind in PIN_KINDS:
             self._check_pins(fault)
         if fault.kind == "plug":

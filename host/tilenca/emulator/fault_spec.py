@@ -22,6 +22,11 @@ from dataclasses import dataclass
 from tilenca.base.errors import UsageError
 from tilenca.protocol.stream_hands import MAX_SKEW_PPM
 
+
+class FaultError(UsageError):
+    """A fault that cannot be."""
+
+
 EXAMPLE = "loss=0.1@3E:2-5 or cut@3-4:2"
 LINK_KINDS = {"loss": 1.0, "flip": 1.0, "delay": 1000.0}  # with the most each can be
 TILE_KINDS = {"drift": 10_000.0, "adc": 100.0, "supply": 5.5, "skew": MAX_SKEW_PPM}
@@ -52,13 +57,13 @@ class FaultSpec:
     from_s: float
     to_s: float | None
 
-    def refuse(self, fact: str) -> UsageError:
+    def refuse(self, fact: str) -> "FaultError":
         """The error for this one."""
         return _complaint(self.text, fact)
 
 
-def _complaint(text: str, fact: str) -> UsageError:
-    return UsageError(f"--fault '{text}': {fact}; for example {EXAMPLE}")
+def _complaint(text: str, fact: str) -> "FaultError":
+    return FaultError(f"--fault '{text}': {fact}; for example {EXAMPLE}")
 
 
 def _number(text: str, part: str, fact: str, signed: bool = False) -> float:

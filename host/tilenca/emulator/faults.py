@@ -240,8 +240,12 @@ class Faults:
 
     def _tile(self, spec: FaultSpec, text: str) -> int:
         if not text.isdecimal() or not 1 <= int(text) <= len(self.array):
-            raise spec.refuse(f"no tile '{text}'; they are 1 to {len(self.array)}")
+            raise spec.refuse(self.no_tile(text))
         return int(text) - 1
+
+    def no_tile(self, text: str) -> str:
+        """What is wrong with a tile that there is not."""
+        return f"no tile '{text}'; they are 1 to {len(self.array)}, from left to right and top to bottom"
 
     def _ends(self, spec: FaultSpec) -> list[End]:
         both = [(a, side, b, other) for a, side, b, other in self.links]
@@ -259,5 +263,8 @@ class Faults:
             wanted_tile = self._tile(spec, one)
             ends = [(tile, side) for tile, side, other, _ in both if wanted_tile in (tile, other)]
         if not ends and spec.where:
-            raise spec.refuse("no cable there")
+            tile = self._tile(spec, one.rstrip("".join(SIDES)))
+            there = sorted((side, other) for a, side, other, _ in both if a == tile)
+            cables = ", ".join(f"{SIDES[side]} to tile {other + 1}" for side, other in there)
+            raise spec.refuse(f"no cable there; tile {tile + 1} has {cables or 'none'}")
         return sorted(ends)

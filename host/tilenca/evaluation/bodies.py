@@ -24,8 +24,18 @@ DEAD = (0.05, 0.15)  # shares of dead tiles
 TIMES = 2  # as many rows and columns as drawn, for dead tiles
 
 
-def agreeing_cases(task: Drawings, first: Sequence[Shape], aimed: Sizes, seed: int) -> Iterator[Case]:
-    """Any connected drawings, and drawings of a class with one tile too many, at one or two sizes."""
+def agreeing_cases(
+    task: Drawings, first: Sequence[Shape], aimed: Sizes, seed: int, asked: bool
+) -> Iterator[Case]:
+    """Any connected drawings, and drawings of a class with one tile too many, at one or two sizes.
+
+    Args:
+        task: of the model.
+        first: the drawings of the first file.
+        aimed: the sizes that the model is trained for.
+        seed: of the drawings.
+        asked: whether the model is trained to agree on them.
+    """
     random = np.random.default_rng(seed)
     for size in (None, LARGER) if LARGER in aimed.trained else (None,):
         shapes = list(first) if size is None else at_size(first, size)
@@ -34,11 +44,11 @@ def agreeing_cases(task: Drawings, first: Sequence[Shape], aimed: Sizes, seed: i
         any_drawing = [Shape(UNLABELLED, drawing, "/".join(drawing)) for drawing in rows]
         if any_drawing:
             title = f"{name}, any connected drawing: one answer on all tiles"
-            yield Case("one answer", title, task.of(any_drawing), steps)
+            yield Case("one answer", title, task.of(any_drawing), steps, aimed=asked)
         more = list(_with_one_more(shapes, random))
         if more:
             title = f"{name}, one tile too many: the class or a dash, but one answer"
-            yield Case("one tile too many", title, task.of(more), steps)
+            yield Case("one tile too many", title, task.of(more), steps, aimed=asked)
 
 
 def _any_connected(drawings: Sequence[Rows], random: np.random.Generator) -> Iterator[Rows]:

@@ -202,9 +202,8 @@ class Evaluator:
             if not self._wanted(name):
                 continue
             each, random = max(1, self.runs // (10 if way is AT_ONCE else 40)), self._chance(name)
-            changed = rebuild(self.engine, case.drawings, each, CONVERGED_BY, case.steps, random, way)
-            if changed is not None:
-                runs = Runs(case, changed.chosen, changed.trajectory, {case.steps: changed.answers})
+            runs = self._changed(case, each, random, way)
+            if runs is not None:
                 yield measure("changes", name, runs, case.steps, target_of(target))
 
     def longevity(self) -> Iterator[Measurement]:
@@ -258,6 +257,13 @@ class Evaluator:
             parts.append(simulator.run(mark - before).right)
             answers[mark] = simulator.answers()
         return Runs(case, chosen, Trajectory(np.concatenate(parts)), answers)
+
+    def _changed(self, case: Case, each: int, random: np.random.Generator, way: Way) -> Runs | None:
+        """Every drawing rebuilt into those of other classes; None where there is only one class."""
+        changed = rebuild(self.engine, case.drawings, each, CONVERGED_BY, case.steps, random, way)
+        if changed is None:
+            return None
+        return Runs(case, changed.chosen, changed.trajectory, {case.steps: changed.answers})
 
     @staticmethod
     def _every_drawing(case: Case, each: int) -> NDArray[np.int64]:

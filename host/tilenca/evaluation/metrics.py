@@ -4,7 +4,7 @@ A run counts as right when *every* tile shows the right class. `tilenca.evaluati
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -226,6 +226,14 @@ def measure(
         wrong,
         split,
     )
+
+
+def least_shares(rows: Iterable[Measurement]) -> dict[str, float]:
+    """The smallest share by kind of measurement: of the rows with a target, if the kind has any."""
+    least: dict[str, tuple[bool, float]] = {}
+    for row in rows:
+        least[row.key] = min(least.get(row.key, (True, math.inf)), (row.target is None, row.share))
+    return {key: share for key, (_, share) in least.items()}
 
 
 def answer_shares(

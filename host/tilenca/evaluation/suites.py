@@ -77,6 +77,7 @@ class Aims:
         varied: whether classes are what their drawings may become. Then a drawing of no class must not be
             like one of them; else it only must not be one of them.
         directions: whether tiles say where one is missing.
+        agreeing: whether tiles give one answer on drawings of no class, whatever it is.
     """
 
     stretch: float = 1.0
@@ -84,6 +85,7 @@ class Aims:
     unknown: bool = False
     varied: bool = False
     directions: bool = False
+    agreeing: bool = False
 
 
 def recorded_aims(model: Model) -> Aims:
@@ -93,13 +95,20 @@ def recorded_aims(model: Model) -> Aims:
         UsageError: the metadata are damaged.
     """
     recipe = model.metadata.get("recipe", {})
-    stretch, damaged, unknown, varied = (
-        recipe.get(name, default)
-        for name, default in (("stretch", 1.0), ("damaged", 0.0), ("unknown", 0.0), ("varied", 0.0))
-    )
-    if not all(isinstance(value, int | float) for value in (stretch, damaged, unknown, varied)):
+    names = ("stretch", "damaged", "unknown", "varied", "unlabelled")
+    values = [recipe.get(name, 1.0 if name == "stretch" else 0.0) for name in names]
+    if not all(isinstance(value, int | float) for value in values):
         raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
-    return Aims(float(stretch), damaged > 0, unknown > 0, varied > 0, model.dimensions.directions > 0)
+    stretch, *shares = map(float, values)
+    return aims_with(stretch, *shares, directions=model.dimensions.directions)
+
+
+def aims_with(
+    stretch: float, damaged: float, unknown: float, varied: float, unlabelled: float, *, directions: float
+) -> Aims:
+    """The aims of a training with these settings of its recipe (`tilenca.training.recipe.Recipe`)."""
+    agreeing = unknown > 0 or unlabelled > 0
+    return Aims(stretch, damaged > 0, unknown > 0, varied > 0, directions > 0, agreeing)
 
 
 def make_suite(
@@ -130,7 +139,7 @@ def make_suite(
         tuple(_larger(task, first, aimed)),
         varied_case(task, aims, seed, split),
         () if shortened else tuple(dead_cases(task, first, aimed, aims.damaged, aims.varied)),
-        tuple(agreeing_cases(task, first, aimed, seed)),
+        tuple(agreeing_cases(task, first, aimed, seed, aims.agreeing)),
         tuple(_missing_cases(task, first, aimed, split)) if aims.directions else (),
         slow_changes=not shortened,
     )

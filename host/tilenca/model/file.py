@@ -35,16 +35,17 @@ LARGEST = {"w1": 127, "w2": 127, "w3": 127, "b1": 32767, "b2": 32767, "b3": 3276
 MAX_WIDTH = 127
 # What the shipped digits have: channels of the state, and the width of both hidden layers.
 DEFAULT_CHANNELS, DEFAULT_HIDDEN = 21, 96
+CHECKPOINTS = "checkpoint-*.pt"  # the files of unfinished runs, by their seeds
 
 
 def checkpoint_path(directory: Path, seed: int) -> Path:
     """The file of an unfinished training run with this seed, in a model's directory."""
-    return directory / f"checkpoint-{seed}.pt"
+    return directory / CHECKPOINTS.replace("*", str(seed))
 
 
 def checkpoints(directory: Path) -> list[Path]:
     """The checkpoints of an unfinished run."""
-    return sorted(directory.glob("checkpoint-*.pt"))
+    return sorted(directory.glob(CHECKPOINTS))
 
 
 # All exceptions of numpy and zipfile on bytes that are no archive of arrays.

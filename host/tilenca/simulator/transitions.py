@@ -81,7 +81,7 @@ def rebuild(
     Returns:
         The runs; None where there is only one class.
     """
-    pairs = _pairs(drawings, runs, random)
+    pairs = pairs_of(drawings, runs, random)
     if not pairs:
         return None
     simulator, _ = rebuilt(engine, drawings, pairs, before, random, way)
@@ -205,7 +205,7 @@ def _timetable(sites: Sequence[_Site], last: int, between: int) -> Rebuilding:
     return Rebuilding(np.array(present, np.bool_), np.array(sorted(switches), np.int32).reshape(-1, 3))
 
 
-def _pairs(drawings: Drawings, runs: int, random: np.random.Generator) -> list[tuple[int, int]]:
+def pairs_of(drawings: Drawings, runs: int, random: np.random.Generator) -> list[tuple[int, int]]:
     """Every drawing with every one of another class, `runs` times, or `MOST_CHANGES` pairs by chance."""
     classes, every = drawings.classes, range(len(drawings))
     if len(drawings) ** 2 <= MOST_CHANGES:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tilenca.evaluation.suites import Aims
+from tilenca.evaluation.suites import Aims, aims_with
 
 
 @dataclass(frozen=True)
@@ -133,10 +133,11 @@ class Recipe:
 
 def aims_of(recipe: Recipe) -> Aims:
     """The aims of a recipe."""
-    shown = (recipe.damaged > 0, recipe.unknown > 0, recipe.varied > 0, recipe.directions > 0)
-    return Aims(recipe.stretch, *shown)
-
-
-def trains_for(recipe: Recipe, key: str) -> bool:
-    """Whether a recipe trains for the measurements of this key; one answer needs other drawings, too."""
-    return key != "one answer" or recipe.unknown > 0 or recipe.unlabelled > 0
+    return aims_with(
+        recipe.stretch,
+        recipe.damaged,
+        recipe.unknown,
+        recipe.varied,
+        recipe.unlabelled,
+        directions=recipe.directions,
+    )

@@ -17,6 +17,7 @@ import torch
 from tilenca.base.errors import InterruptedRunError, TilencaError
 from tilenca.base.signals import SIGNALS, promising
 from tilenca.evaluation.evaluator import Evaluator
+from tilenca.evaluation.metrics import least_shares
 from tilenca.evaluation.suites import Suite, make_suite
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
@@ -26,7 +27,7 @@ from tilenca.simulator.engine import FastEngine
 from tilenca.training.config import Config
 from tilenca.training.curriculum import build
 from tilenca.training.progress import Progress, Tell
-from tilenca.training.recipe import aims_of, trains_for
+from tilenca.training.recipe import aims_of
 from tilenca.training.rollout import use_threads
 from tilenca.training.trainer import Trained, Trainer, model_of
 
@@ -146,18 +147,13 @@ def _suite(job: Job) -> Suite:
 
 
 def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
-    """A short measurement; ends the training when all targets held several times in a row.
-
-    What the recipe does not train for does not count: it would never hold, and no training would end early.
-    """
+    """A short measurement; ends the training when all targets held several times in a row."""
     model, _ = model_of(trainer.now(), {})
     for runs in (CHECK_RUNS, CLOSER_RUNS):
-        measured = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
-        rows = [row for row in measured if trains_for(trainer.config.recipe, row.key)]
+        rows = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
         if shortfall := sum(row.shortfall for row in rows):
             break
-    shares = {row.key: min(other.share for other in measured if other.key == row.key) for row in measured}
-    trainer.measured(shortfall, shares)
+    trainer.measured(shortfall, least_shares(rows))
     last = [short for _, short, _ in trainer.checks[-HOLDS_TO_END:]]
     trainer.ended = len(last) == HOLDS_TO_END and not any(last)
     aimed = [row for row in rows if row.target is not None]

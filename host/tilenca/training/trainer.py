@@ -43,7 +43,7 @@ class Trained:
         iteration: how many iterations were done.
         ended: whether it ended before the last iteration, since all targets held.
         history: (iteration, loss, agreement), means since the row before.
-        checks: (iteration, shortfall, smallest share by kind of measurement) of the short measurements.
+        checks: (iteration, shortfall, `least_shares`) of the short measurements.
         done: whether there is nothing left to train.
     """
 

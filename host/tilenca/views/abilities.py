@@ -40,11 +40,18 @@ def abilities(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 
 class Targets(NamedTuple):
-    """Of one kind of measurement: targets that are held, targets that are given, and the least one."""
+    """Of one kind of measurement, as far as it has targets.
+
+    Attributes:
+        held, given: how many targets.
+        least: the smallest of them.
+        share: the smallest share of the runs in a row with a target.
+    """
 
     held: int
     given: int
     least: float
+    share: float
 
 
 def targets_by_kind(metrics: Mapping[str, Any]) -> dict[str, Targets]:
@@ -58,6 +65,11 @@ def targets_by_kind(metrics: Mapping[str, Any]) -> dict[str, Targets]:
         if row["target"] is not None:
             kinds.setdefault(row["key"], []).append(row)
     return {
-        kind: Targets(sum(row["holds"] for row in rows), len(rows), min(row["target"] for row in rows))
+        kind: Targets(
+            sum(row["holds"] for row in rows),
+            len(rows),
+            min(row["target"] for row in rows),
+            min(row["share"] for row in rows),
+        )
         for kind, rows in kinds.items()
     }

@@ -41,7 +41,8 @@ def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str
     agreed_s, after_update_s = emulation.agreed_at_s(), emulation.agreed_after_update_s()
     if agreed_s is not None:
         updated = "" if after_update_s is None else f", {after_update_s:.2f} s after its first update"
-        tiles = "the tile shows" if count == 1 else f"all {count} tiles show"
+        powered = " with power" if count < len(emulation.array) else ""
+        tiles = f"the tile{powered} shows" if count == 1 else f"all {count} tiles{powered} show"
         return (
             f"{name}: {tiles} {emulation.shape.label}, since {agreed_s:.2f} s after the last was switched on"
             f"{updated} (update {emulation.agreed_at_update()})"

@@ -1,14 +1,13 @@
-"""Pictures for reports: the course of a training, and the tiles while they converge. Needs matplotlib.
+"""Pictures: their style, how they are written, and trainings over each other. Needs matplotlib.
 
 The same data give the same bytes, with any settings of the user's matplotlib.
 """
 
 import errno
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,7 +15,6 @@ from numpy.typing import NDArray
 
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.project import install_remedy
-from tilenca.views.abilities import QUESTIONS, Targets
 
 try:
     from matplotlib import style
@@ -31,7 +29,6 @@ except ImportError as error:
 
 # Values in the order of columns; None: not measured there.
 Rows: TypeAlias = Sequence[Sequence[float | None]]
-HISTORY = ("iteration", "loss", "agreement")
 WIDEST, THINNER, THINNEST = 3.2, 0.16, 1.2  # lines: the first, each one after it, and none below
 SMOOTHED = 60  # lines of fewer points are drawn as they are
 
@@ -93,50 +90,11 @@ def unwritable(path: Path, error: OSError) -> TilencaError:
     return UsageError(f"{path}: {error.strerror or error}; give a place that can be written")
 
 
-def plot_history(
-    rows: Iterable[Sequence[float | None]],
-    path: Path,
-    columns: Sequence[str] = HISTORY,
-    title: str = "Training",
-    targets: Mapping[str, Targets] = MappingProxyType({}),
-) -> None:
-    """Draws loss and agreement over the iterations of a training run.
-
-    Args:
-        rows: one per point, values in the order of `columns`; None or NaN: not measured there.
-        path: PNG or SVG.
-        columns: `iteration`, `loss`, `agreement`, and any number of measured columns named like `@60` or
-            `@sizes`; others are left out.
-        title: stands above.
-        targets: of the measured columns, by their names without `@`; the least one of each is a mark at the
-            right edge, and the legend says how many the model holds in the end.
-
-    Raises:
-        UsageError: no rows, a column is missing, or what `save` says.
-    """
-    table = np.array([[math.nan if x is None else x for x in row] for row in rows], np.float64)
-    missing = [name for name in HISTORY if name not in columns]
-    if missing:
-        raise UsageError(
-            f"{path}: the history has no column '{missing[0]}' to draw; it has: {' '.join(columns)}"
-        )
-    if len(table) == 0:
-        raise UsageError(f"{path}: the history has no rows to draw; train for more iterations")
-    data = dict(zip(columns, table.T, strict=True))
-    with styled():
-        figure = Figure(figsize=(WIDTH_IN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08))
-        upper, lower = figure.subplots(2, 1, sharex=True)
-        figure.suptitle(title, x=0.02, ha="left", fontsize=13, fontweight="bold")
-        _draw_loss(upper, data["iteration"], data["loss"])
-        _draw_agreement(lower, data, targets)
-        save(figure, path)
-
-
 def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
     """Draws loss and agreement of several trainings over each other.
 
     Args:
-        runs: by the name that stands for each; rows of (iteration, loss, agreement), as of `plot_history`.
+        runs: by the name that stands for each; rows of (iteration, loss, agreement), None: not measured.
         path: PNG or SVG.
 
     Raises:
@@ -150,25 +108,28 @@ def plot_runs(runs: Mapping[str, Rows], path: Path) -> None:
     if not tables:
         raise UsageError(f"{path}: no training there has a history to draw")
     with styled():
-        figure = Figure(figsize=(WIDTH_IN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08))
+        figure = titled_figure("Trainings", 5.6, 0.08)
         upper, lower = figure.subplots(2, 1, sharex=True)
-        figure.suptitle("Trainings", x=0.02, ha="left", fontsize=13, fontweight="bold")
         for number, (name, table) in enumerate(tables.items()):
-            _draw_line(upper, table[:, 0], table[:, 1], number, name)
-            _draw_line(lower, table[:, 0], table[:, 2], number, name)
-        _as_loss(upper, min(float(np.nanmin(table[:, 1])) for table in tables.values()))
-        _as_agreement(lower)
+            draw_line(upper, table[:, 0], table[:, 1], number, name)
+            draw_line(lower, table[:, 0], table[:, 2], number, name)
+        as_loss(upper, min(float(np.nanmin(table[:, 1])) for table in tables.values()))
+        as_share(lower)
+        as_iterations(lower)
         lower.set_ylabel("training samples all right")
         lower.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2, fontsize="small")
         save(figure, path)
 
 
-def _draw_loss(axes: Axes, iteration: NDArray[np.float64], loss: NDArray[np.float64]) -> None:
-    _draw_line(axes, iteration, loss, 0)
-    _as_loss(axes, float(np.nanmin(loss, initial=math.inf)))
+def titled_figure(title: str, height_in: float, apart_in: float) -> Figure:
+    """An empty figure of our width, whose panels will lie so far apart."""
+    layout = ConstrainedLayoutEngine(w_pad=0.12, h_pad=apart_in)
+    figure = Figure(figsize=(WIDTH_IN, height_in), layout=layout)
+    figure.suptitle(title, x=0.02, ha="left", fontsize=13, fontweight="bold")
+    return figure
 
 
-def _as_loss(axes: Axes, least: float) -> None:
+def as_loss(axes: Axes, least: float) -> None:
     """A logarithmic axis, unless a loss is 0."""
     if least > 0:
         axes.set_yscale("log")
@@ -178,52 +139,21 @@ def _as_loss(axes: Axes, least: float) -> None:
     axes.set_ylabel("loss per tile")
 
 
-def _draw_agreement(axes: Axes, data: dict[str, NDArray[np.float64]], targets: Mapping[str, Targets]) -> None:
-    _draw_line(axes, data["iteration"], data["agreement"], 0, "training samples", INK)
-    measured = sorted((_place(name[1:]), name) for name in data if name.startswith("@"))
-    for place, name in measured:
-        target = targets.get(name[1:])
-        _draw_line(axes, data["iteration"], data[name], place, _question(name[1:]) + _held(target))
-        if target is not None:
-            edge = axes.get_yaxis_transform()
-            axes.plot(
-                [1.0],
-                [target.least],
-                marker=5,
-                markersize=9,
-                color=_colour(place),
-                transform=edge,
-                clip_on=False,
-            )
-    if measured:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3, fontsize="small")
-    _as_agreement(axes)
-
-
-def _held(target: Targets | None) -> str:
-    return "" if target is None else f": {target.held} of {target.given} targets"
-
-
-def _as_agreement(axes: Axes) -> None:
+def as_share(axes: Axes, ticks: int = 6) -> None:
+    """An axis of shares with so many ticks, 0 and 100 % among them."""
     axes.set_ylim(-0.02, 1.02)
-    axes.set_ylabel("share with every tile right")
-    axes.set_xlabel("iteration")
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    axes.set_yticks(np.linspace(0, 1, ticks))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0%}"))
 
 
-def _place(name: str) -> int:
-    """The number of a kind of measurement, which is the same in the picture of every training."""
-    kinds = list(QUESTIONS)
-    return kinds.index(name) if name in kinds else len(kinds) + (int(name) if name.isdigit() else 0)
+def as_iterations(axes: Axes) -> None:
+    """An axis of iterations."""
+    axes.set_xlabel("iteration")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
 
 
-def _question(name: str) -> str:
-    return f"measured after {name} steps" if name.isdigit() else name
-
-
-def _draw_line(
+def draw_line(
     axes: Axes,
     x: NDArray[np.float64],
     y: NDArray[np.float64],

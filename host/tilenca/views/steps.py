@@ -187,7 +187,7 @@ class Steps:
                 self.move(train, "; ".join(words), share)
 
             yield tell
-            self.end(train, "; ".join(f"{one.iteration:,} iterations" for one in latest.values()))
+            self.end(train, "; ".join(_ended(one, total) for one in latest.values()))
 
         @contextmanager
         def measuring(where: str) -> Iterator[Callable[[str], None]]:
@@ -210,6 +210,12 @@ class Steps:
     def _say(self, line: str) -> None:
         self._said_s = time.monotonic()
         warn(line)
+
+
+def _ended(news: Progress, total: int) -> str:
+    held, asked, _ = news.check or (0, 1, 0.0)
+    early = f" of {total:,}, since all targets held" if news.iteration < total and held == asked else ""
+    return f"{news.iteration:,} iterations{early}"
 
 
 def time_text(seconds: float) -> str:

@@ -100,7 +100,7 @@ def reached(news: Progress, total: int) -> str:
     line = f"{news.iteration} of {total} iterations; all tiles right on {news.agreement:.0%} of the drawings"
     if news.check is not None:
         held, asked, _ = news.check
-        line += f"; {held} of {asked} targets met"
+        line += f"; on the way {held} of {asked} targets met"
     return line
 
 
@@ -113,6 +113,6 @@ def _note(news: Progress, rate: float) -> str:
     note = f"loss {news.loss:.4f}  all right {news.agreement:.1%}  {rate:.0f}/s"
     if news.check is not None:
         held, asked, shortfall = news.check
-        note += f"  {held} of {asked} targets met"
+        note += f"  on the way {held} of {asked} targets met"
         note += f", {shortfall:.3f} short" if shortfall else ""
     return note

@@ -258,7 +258,7 @@ export class Faults {
   /** @param {Spec} spec @param {string} text */
   #tile(spec, text) {
     if (!/^\d+$/.test(text) || Number(text) < 1 || Number(text) > this.array.size) {
-      throw complaint(spec.text, `no tile '${text}'; they are 1 to ${this.array.size}`);
+      throw complaint(spec.text, `no tile '${text}'; they are 1 to ${this.array.size}, from left to right and top to bottom`);
     }
     return Number(text) - 1;
   }
@@ -280,7 +280,12 @@ export class Faults {
       wanted = ([tile, , other]) => tile === a || other === a;
     }
     const ends = both.filter(wanted).map(([tile, side]) => /** @type {End} */ ([tile, side]));
-    if (ends.length === 0 && where) throw complaint(spec.text, "no cable there");
+    if (ends.length === 0 && where) {
+      const tile = this.#tile(spec, one.replace(/[NESW]+$/, ""));
+      const there = sorted(both.filter(([a]) => a === tile).map(([, side, other]) => [side, other]));
+      const cables = there.map(([side, other]) => `${SIDES[side]} to tile ${other + 1}`).join(", ");
+      throw complaint(spec.text, `no cable there; tile ${tile + 1} has ${cables || "none"}`);
+    }
     return sorted(ends);
   }
 }
