@@ -21,6 +21,7 @@ from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.emulator.greeting import greeting
 from tilenca.fleet.image import firmware_id, parse_hex
 from tilenca.fleet.recording import read_recording
+from tilenca.model.file import load_model
 
 
 @pytest.fixture(autouse=True)
@@ -211,7 +212,8 @@ def test_a_file_with_classes_that_the_firmware_lacks_is_told_at_once(
     )
     assert status == 1
     first, *_ = err.splitlines()
-    assert re.match("tilenca: the firmware's model D968 is not for .*letters.toml", first)
+    ours = f"{load_model(paths.DEFAULT_MODEL).model_id:04X}"
+    assert re.match(f"tilenca: the firmware's model {ours} is not for .*letters.toml", first)
     assert err.count("is not for") == 1
     assert "WRONG" in out
 

@@ -225,9 +225,9 @@ def test_a_shape_can_be_rebuilt_into_another(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_the_targets_that_a_model_holds_are_in_its_picture(tmp_path: Path) -> None:
-    assert plot("digits", "--out", tmp_path, "--format", "svg") == 0
+    assert plot("digits-drawn", "--out", tmp_path, "--format", "svg") == 0
     with_targets = (tmp_path / "history.svg").read_bytes()
-    shutil.copytree(paths.DEFAULT_MODEL, tmp_path / "model")
+    shutil.copytree(paths.MODELS / "digits-drawn", tmp_path / "model")
     (tmp_path / "model" / "metrics.json").write_text("{}", encoding="utf-8")
     assert plot(tmp_path / "model", "--out", tmp_path, "--format", "svg") == 0
     assert (tmp_path / "history.svg").read_bytes() != with_targets

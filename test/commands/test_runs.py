@@ -74,7 +74,8 @@ def test_curves_of_all_of_them_are_drawn_over_each_other(
 def test_all_models_that_ship_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["runs", str(paths.MODELS), "--json"]) == 0
     runs = {Path(run["run"]).name: run for run in json.loads(capsys.readouterr().out)["runs"]}
-    assert runs["digits"]["recipe"] == "full"
+    assert runs["digits"]["recipe"] == "refine"
+    assert runs["digits-drawn"]["recipe"] == "full"
     assert runs["digits"]["held"] < runs["digits"]["targets"]
 
 

@@ -82,7 +82,7 @@ def test_classes_without_variants_are_refused_before_training(tmp_path: Path) ->
 
 
 def test_a_training_begins_with_the_weights_of_a_model(tmp_path: Path) -> None:
-    plan = make_plan(arguments(tmp_path, "--recipe", "forms", "--weights", "digits-hands"))
+    plan = make_plan(arguments(tmp_path, "--recipe", "forms", "--weights", "digits"))
     assert plan.initial is not None
     assert plan.dimensions == plan.initial.dimensions == Dimensions(24, 96, 96)
 
@@ -100,8 +100,8 @@ def test_a_model_without_directions_gets_them_where_the_recipe_trains_them(tmp_p
 @pytest.mark.parametrize(
     ("more", "wanted"),
     [
-        (["--weights", "digits-hands", "--hidden", "40"], "--hidden 96, not 40"),
-        (["--weights", "digits-hands", "--state", "21"], "--state 24, not 21"),
+        (["--weights", "digits", "--hidden", "40"], "--hidden 96, not 40"),
+        (["--weights", "digits", "--state", "21"], "--state 24, not 21"),
         (["--weights", "letters"], "of the same classes"),
     ],
 )

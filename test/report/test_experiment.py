@@ -31,7 +31,7 @@ def test_a_sweep_has_all_its_axes_and_the_digits_unless_models_vary() -> None:
 
 
 def test_it_knows_which_firmware_it_needs_built() -> None:
-    words = evaluation("--model", "digits-hands", "--engine", "emulator")
-    assert experiment(words).emulated_model(MODELS) == MODELS / "digits-hands"
-    assert experiment(evaluation("--model", "digits-hands")).emulated_model(MODELS) is None
+    words = evaluation("--model", "digits-drawn", "--engine", "emulator")
+    assert experiment(words).emulated_model(MODELS) == MODELS / "digits-drawn"
+    assert experiment(evaluation("--model", "digits-drawn")).emulated_model(MODELS) is None
     assert experiment(emulation("--updates", "60")).emulated_model(MODELS) is None

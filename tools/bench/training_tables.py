@@ -21,7 +21,7 @@ from tilenca.model.file import load_model
 
 DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
 MODELS = paths.ROOT / "models"
-WIDTHS = ("digits-40", "digits-64", "digits")  # trained by the same recipe
+WIDTHS = ("digits-40", "digits-64", "digits-drawn")  # trained by the same recipe
 TASKS = ("hex", "letters", "pentominoes")
 # Rows to show of a width or a task: a short name, the end of the row's name, and its steps.
 ROWS = {
@@ -60,13 +60,13 @@ def by_paper(name: str, steps: int) -> str:
 
 
 def digits() -> Iterator[list[str]]:
-    """Every row of the digits' model, with the paper's recipe and the one for any hand beside it."""
+    """Every row of the digits' model, with the paper's recipe and the one for drawings alone beside it."""
     yield [
         "digits, share of runs with every tile right",
         "after steps",
         "the paper's recipe",
+        "`models/digits-drawn`",
         "`models/digits`",
-        "`models/digits-hands`",
         "target",
     ]
     for row in metrics_of("digits")["rows"]:
@@ -79,8 +79,8 @@ def digits() -> Iterator[list[str]]:
             name,
             str(row["steps"]),
             by_paper(*place),
+            share("digits-drawn", place),
             f"{row['share']:.3f}",
-            share("digits-hands", place),
             target,
         ]
 

@@ -1,4 +1,4 @@
-// Rendered by `tilenca export` from model D968; do not edit. Body b78e85f6bc2db03b
+// Rendered by `tilenca export` from model F9FA; do not edit. Body b91abcc8bb001d98
 #pragma once
 
 #include <stdint.h>
@@ -8,8 +8,8 @@
 namespace tilenca {
 namespace model {
 
-constexpr uint16_t kModelId = 0xD968;
-constexpr uint8_t kChannels = 21;
+constexpr uint16_t kModelId = 0xF9FA;
+constexpr uint8_t kChannels = 24;
 constexpr uint8_t kHidden1 = 96;
 constexpr uint8_t kHidden2 = 96;
 constexpr uint8_t kDirections = 0;

@@ -8,7 +8,7 @@ from tilenca.report.rows import SHARE, Row
 
 EDGES = "edges"
 SIZES = "size=drawn,12x10"
-MODELS = "model=paper,digits-40,digits,digits-hands"
+MODELS = "model=paper,digits-40,digits-drawn,digits"
 HOLDS = 0.99  # a claim holds where so many of the runs are right
 SHARE_OF_RUNS = "Share of the runs with all tiles right"
 

@@ -8,12 +8,12 @@ from tilenca.report import atlas, words
 from tilenca.report.experiment import Experiment, emulation, evaluation, with_seed
 from tilenca.report.rows import Words
 
-PAPER, OURS, PLUG, HANDS, EDGES, GAP = "paper", "ours", "plug", "hands", atlas.EDGES, "gap"
+PAPER, OURS, PLUG, DRAWN, EDGES, GAP = "paper", "ours", "plug", "drawn", atlas.EDGES, "gap"
 TITLES = {
     PAPER: "The paper's experiments",
     OURS: "What the shipped model does",
     PLUG: "Tiles plugged in while the others run",
-    HANDS: "Any hand's digits",
+    DRAWN: "Digits as drawn alone",
     EDGES: "The fault atlas: where it ends",
     GAP: "Simulation and tile",
 }
@@ -22,12 +22,13 @@ SIZES = ("5x4", "7x6", "8x5", "9x7", "12x10", "14x12", "20x16")
 STEPS_OF = {"20x16": 200, "5x4": 60, "7x6": 60, "8x5": 60}
 NETWORKS = {"paper": "by the paper's recipe", "digits": "shipped model"}
 # Rows of the test suite, by parts of their names.
-HANDS_ROWS = (
+DRAWN_ROWS = (
     "held-out forms",
     "one tile missing, new pairs",
     "no class",
     "connected drawing",
     "at once",
+    "every 15 updates",
     "listing",
     "1000",
 )
@@ -120,15 +121,15 @@ EXPERIMENTS = (
     *(
         Experiment(
             key,
-            HANDS,
-            "digits of any hand",
+            DRAWN,
+            "digits as drawn alone",
             evaluation(
-                "--suite", "--model", "digits-hands", *(word for row in rows for word in ("--row", row))
+                "--suite", "--model", "digits-drawn", *(word for row in rows for word in ("--row", row))
             ),
             "suite",
             runs,
         )
-        for key, rows, runs in (("hands", HANDS_ROWS[:1], (100, 2)), ("hands.more", HANDS_ROWS[1:], (100, 0)))
+        for key, rows, runs in (("drawn", DRAWN_ROWS[:1], (100, 2)), ("drawn.more", DRAWN_ROWS[1:], (100, 0)))
     ),
     Experiment(
         "suite", OURS, "the test suite", evaluation("--suite", "--model", "digits"), "suite", (100, 4)
@@ -142,7 +143,7 @@ EXPERIMENTS = (
             "plugging",
             (6, 1 if model == "digits" and kind == "again" else 0),
         )
-        for model in ("digits", "digits-hands")
+        for model in ("digits", "digits-drawn")
         for kind, what in (
             ("again", "a tile pulled for 0.8 s and plugged in again"),
             ("new", "a tile plugged in that was never there"),

@@ -100,7 +100,7 @@ class Folder:
 
 def calls_of(experiments: Sequence[Experiment], quick: bool) -> list[Call]:
     """The calls of a report, the longest first, so that no core waits for one that began late."""
-    first = ("suite", "gap.tiles", "plug", "hands", "paper.settings", "gap.states", "edges", "paper.tiles")
+    first = ("suite", "gap.tiles", "plug", "drawn", "paper.settings", "gap.states", "edges", "paper.tiles")
     rank = {key: number for number, key in enumerate(first)}
     calls = [Call(experiment.key, experiment.arguments(quick)) for experiment in experiments]
     return sorted(
