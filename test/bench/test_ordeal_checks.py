@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,7 +18,8 @@ PERIOD_S, TOLD_EVERY_S = 0.02, 0.1
 def told(count: str, per_frame: float, begun: int = 100) -> list[tuple[float, LinkSentence]]:
     """What a side says in four seconds in which its neighbour sends a frame every 20 ms."""
     times = [TOLD_EVERY_S * i for i in range(40)]
-    return [(at, replace(SIDE, **{count: begun + int(per_frame * at / PERIOD_S)})) for at in times]
+    changes: list[dict[str, Any]] = [{count: begun + int(per_frame * at / PERIOD_S)} for at in times]
+    return [(at, replace(SIDE, **change)) for at, change in zip(times, changes, strict=True)]
 
 
 def test_counts_that_began_anywhere_add_up_and_one_of_ten_counted_twice_or_not_does_not() -> None:

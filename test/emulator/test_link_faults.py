@@ -190,6 +190,19 @@ def test_a_drifting_clock_gains_with_the_square_of_time(avr: Compile) -> None:
     assert gained == pytest.approx(16 * (200 - 2 * 100 * 0.0655 / 2), abs=20)
 
 
+@pytest.mark.parametrize(("ppm_per_s", "rate"), [(-1e6, 0.5), (1e6, 1.5)])
+def test_a_clock_drifts_no_further_than_a_clock_can_be_wrong(
+    ppm_per_s: float, rate: float, avr: Compile
+) -> None:
+    array = Array(avr("int main(void) { for (;;) { } }"))
+    array[0].set_drift(ppm_per_s)
+    array.run(1.5)  # without an end it would have stood still, or run backwards
+    before, (cycles, *_) = array.save(), array[0].cycles
+    array.run(0.5)
+    assert array[0].cycles[0] - cycles == pytest.approx(8e6 * rate, abs=200)
+    array.restore(before)
+
+
 def test_drift_does_not_depend_on_how_time_is_sliced(avr: Compile) -> None:
     elf = avr(TALKER)
     arrays = [pair(elf, ppm=[500, -500]) for _ in range(2)]

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from support.avr import Compile
+from support.avr import Compile, IdealArray
 from support.busy_tiles import BUSY, build
 from tilenca.base.errors import UsageError
-from tilenca.base.sides import EAST
+from tilenca.base.sides import EAST, NORTH, SOUTH
 from tilenca.emulator import Array
 
 
@@ -155,6 +155,50 @@ def test_what_no_array_saves_is_refused_although_its_checksum_is_right(
         array.restore(forged(good, time_at if place < 0 else place, content))
     array.restore(good)
     assert array.save() == good
+
+
+def test_whatever_was_refused_a_good_snapshot_brings_the_array_back(avr: Compile) -> None:
+    array = build(avr(BUSY))
+    array.run(0.005)
+    good = array.save()
+    refused = 0
+    for place in range(FIRST_WIRE, len(good) - 12, 61):  # a prime: they spread over all fields
+        try:
+            array.restore(forged(good, place, b"\xff" * 8))
+        except UsageError:
+            refused += 1
+        array.restore(good)
+        assert array.save() == good
+    assert refused > 10
+
+
+# Toggles its TX to the north, and counts the edges from the south.
+TOGGLER = """
+static volatile uint16_t edges;
+int main(void) {
+    DDRH = 2;
+    for (uint8_t before = PINK;;) {
+        _delay_us(300);
+        PORTH ^= 2;
+        edges += (PINK ^ before) >> 6 & 1;
+        before = PINK;
+    }
+}
+"""
+
+
+def test_a_cable_that_the_snapshot_does_not_have_can_be_plugged_again(avr: Compile) -> None:
+    array = IdealArray(avr(TOGGLER), 2)
+    array.run(0.001)
+    without = array.save()
+    array.link(0, NORTH, 1, SOUTH)
+    array.run(0.03)
+    edges = array[1].integer("edges")
+    assert edges > 50
+    array.restore(without)
+    array.link(0, NORTH, 1, SOUTH)
+    array.run(0.03)
+    assert array[1].integer("edges") == edges
 
 
 def test_a_tile_that_was_added_late_is_saved_before_it_has_run(avr: Compile) -> None:

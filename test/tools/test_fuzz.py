@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from fuzz.build import CORPUS, ROOT, SUITES, TARGETS, Suite, build
-from support.avr import build_target
+from fuzz.build import CORPUS, SUITES, TARGETS, Suite, build
+from support.avr import INSIDE_OPTIONS, build_inside
 
 SANITIZED, RELEASE = SUITES
 
@@ -27,9 +27,8 @@ def replays(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         programs[SANITIZED.name],
         "-fsanitize=address,undefined",
     )
-    build_target("emulator_inside")
-    library = ROOT / "build" / "release" / "libtilenca_emulator_inside.a"
-    build("g++", RELEASE, "replay.cpp", programs[RELEASE.name], library=library)
+    program = programs[RELEASE.name]
+    build("g++", RELEASE, "replay.cpp", program, *INSIDE_OPTIONS, library=build_inside())
     return programs
 
 

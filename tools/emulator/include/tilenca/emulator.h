@@ -167,7 +167,7 @@ TILENCA_API int tilenca_tile_press_button(tilenca_array* array, unsigned tile, i
 TILENCA_API int tilenca_tile_reset(tilenca_array* array, unsigned tile, unsigned cause);
 TILENCA_API int tilenca_tile_set_power(tilenca_array* array, unsigned tile, int on);
 TILENCA_API int tilenca_tile_is_powered(tilenca_array* array, unsigned tile);
-// From now on the clock error grows by so much a second.
+// From now on the clock error grows by so much a second, to half of the nominal rate at most, either way.
 TILENCA_API int tilenca_tile_set_drift(tilenca_array* array, unsigned tile, double ppm_per_s);
 // From now on it is by so much faster than its error and drift make it; at most 100000 either way.
 TILENCA_API int tilenca_tile_set_skew(tilenca_array* array, unsigned tile, double ppm);

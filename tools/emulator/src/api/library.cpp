@@ -3,12 +3,6 @@
 
 namespace tilenca::c_api {
 
-namespace {
-
-constexpr double kMostError = 0.5; // of a clock; at -1 it would stand still
-
-} // namespace
-
 Array& array_of(tilenca_array* handle) {
     return present(handle, "the array").array;
 }

@@ -28,12 +28,12 @@ int tilenca_tile_push_edge(tilenca_array* array, unsigned tile, char port, unsig
         auto& chip = tile_of(array, tile).chip();
         const tilenca::avr::PinId pin = pin_of(port, bit);
         check_range("a cycle", cycle, uint64_t{0}, tilenca::avr::kLastCycle);
-        tilenca::avr::Line* line = chip.gpio().line(pin);
-        if (line == nullptr) {
-            line = &chip.gpio().attach_line(pin, tilenca::avr::Drive::High);
+        if (!chip.gpio().has_line(pin)) {
+            chip.gpio().attach_line(pin, tilenca::avr::Drive::High);
         }
-        if (line->edges() == 0 &&
-            !is_driven(line->drive_at(chip.cpu().cycle))) { // from now on somebody drives it
+        const tilenca::avr::Line& line = *chip.gpio().line(pin);
+        if (line.edges() == 0 &&
+            !is_driven(line.drive_at(chip.cpu().cycle))) { // from now on somebody drives it
             chip.push_edge(pin, chip.cpu().cycle, tilenca::avr::Drive::High);
         }
         chip.push_edge(pin, cycle, tilenca::avr::drive_of(level != 0));

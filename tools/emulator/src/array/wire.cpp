@@ -15,7 +15,7 @@ constexpr double kUnknownBaud = 38400;
 Wire::Wire(Tile& from, Tile& to, End from_end, End to_end, const Common& common, double now)
     : from_(from), to_(to), from_end_(from_end), to_end_(to_end),
       from_pin_(Tile::transmit_pin(from_end.side)), to_pin_(Tile::receive_pin(to_end.side)), common_(common) {
-    if (to_.chip().gpio().line(to_pin_) == nullptr) {
+    if (!to_.chip().gpio().has_line(to_pin_)) {
         to_.chip().gpio().attach_line(to_pin_, Drive::Open);
     }
     from_.chip().gpio().listen(from_pin_, this);

@@ -239,19 +239,22 @@ void Gpio::reset(uint64_t cycle) {
 void Gpio::state(Archive& archive) {
     archive(noise_, pull_ups_on_, shown_changes_);
     for (Port& port : ports_) {
+        uint8_t lines = port.has_lines; // it has those that are there, also where the rest is refused
         archive(port.written, port.ddr_before, port.latch_before, port.levels, port.driven, port.held,
-                port.taken, port.silent, port.interrupting, port.watched, port.heard, port.watched_in,
-                port.has_lines, port.inputs_off, port.fell);
-        archive.require((port.watched_in & ~port.has_lines) == 0, "a pin is watched that has no wire");
+                port.taken, port.silent, port.interrupting, port.watched, port.heard, port.watched_in, lines,
+                port.inputs_off, port.fell);
+        archive.require((port.watched_in & ~lines) == 0, "a pin is watched that has no wire");
         for (unsigned bit = 0; bit < 8; bit++) {
-            if ((port.has_lines >> bit & 1) != 0) {
+            if ((lines >> bit & 1) != 0) {
                 if (port.lines[bit] == nullptr) {
                     const PinId pin{index_of(port), static_cast<uint8_t>(bit)};
                     port.lines[bit] = std::make_unique<Line>(noise_, pin, Drive::Open);
+                    port.has_lines |= pin.mask();
                 }
                 archive(*port.lines[bit]);
             }
         }
+        port.has_lines = lines;
         if (archive.loading()) { // they enter themselves again
             port.sources.fill(nullptr);
             port.modulators.fill(nullptr);

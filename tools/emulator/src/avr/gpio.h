@@ -57,6 +57,8 @@ class Gpio final : public Peripheral {
 
     // Connects an input to a wire whose edges are known ahead of time, and that somebody drives so.
     Line& attach_line(PinId pin, Drive drive);
+    bool has_line(PinId pin) const { return (ports_[pin.port].has_lines & pin.mask()) != 0; }
+    // Of a pin that had one before a snapshot was loaded, which has none there, it is still here.
     Line* line(PinId pin) { return ports_[pin.port].lines[pin.bit].get(); }
     // To be called after edges were pushed on a line.
     void line_changed(PinId pin);

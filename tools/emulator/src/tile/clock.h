@@ -3,6 +3,7 @@
 
 #include "avr/archive.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -11,6 +12,8 @@ namespace tilenca {
 constexpr double kTicksPerSecond = 16e6;
 // A drifting clock changes its rate in steps, at multiples of this.
 constexpr double kDriftTicks = 1 << 20;
+// How wrong a clock can be but for its skew, also one that has drifted for long; at -1 it would stand still.
+constexpr double kMostError = 0.5;
 // Cycles of a chip at the end of a turn: one that was halted in it is behind. One that starts is ahead.
 constexpr double kMostBehind = 1 << 14;
 
@@ -53,7 +56,7 @@ class Clock {
             return;
         }
         for (; (drift_steps_ + 1) * kDriftTicks <= ticks; drift_steps_++) {
-            error_ += drift_ * kDriftTicks / kTicksPerSecond;
+            error_ = std::clamp(error_ + drift_ * kDriftTicks / kTicksPerSecond, -kMostError, kMostError);
             anchor((drift_steps_ + 1) * kDriftTicks);
         }
     }
@@ -64,8 +67,8 @@ class Clock {
     }
     void state(avr::Archive& archive) {
         archive(error_, drift_, skew_, anchor_ticks_, anchor_cycles_, rate_, divisor_, drift_steps_);
-        archive.require(divisor_ != 0 && rate_ > 0 && rate_ == (1 + error()) / divisor_ &&
-                            anchor_cycles_ >= 0,
+        archive.require(divisor_ != 0 && std::abs(error_) <= kMostError && rate_ > 0 &&
+                            rate_ == (1 + error()) / divisor_ && anchor_cycles_ >= 0,
                         "a clock runs as none does");
     }
     // Whether a clock that has been loaded can have come to a time, and a chip with it to a cycle.

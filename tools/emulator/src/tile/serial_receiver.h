@@ -4,6 +4,7 @@
 #include "avr/frame_reader.h"
 #include "tile/clock.h"
 
+#include <algorithm>
 #include <deque>
 
 namespace tilenca {
@@ -23,7 +24,7 @@ class SerialReceiver {
     double bit_ticks() const { return kTicksPerSecond / baud_; }
     // A later call with an earlier time takes back what was said after it.
     void edge(double ticks, bool level) {
-        line_.push(static_cast<uint64_t>(std::ceil(ticks)), avr::drive_of(level));
+        line_.push(static_cast<uint64_t>(std::ceil(std::max(ticks, 0.0))), avr::drive_of(level));
     }
     // Reads all frames that were over by then.
     void receive_until(double end);
