@@ -15,6 +15,7 @@ namespace {
 constexpr unsigned kMostCalls = 40;
 constexpr unsigned kRoom = 16;
 constexpr double kLongestRunS = 0.3e-3;
+constexpr double kMostEarlyS = 2e-3; // that a tile was switched on before
 
 // Takes arguments out of bytes; 0 where they have ended.
 class Source {
@@ -211,7 +212,10 @@ void manage(tilenca_array* a, Source& in, std::vector<uint8_t>& kept) {
     switch (in.byte() % 7) {
     case 0:
         if (tilenca_array_size(a) < 6) { // more only take longer
-            tilenca_array_add_tile(a, in.real(), in.real());
+            const double ppm = in.real();
+            const double start_s = in.real(); // all the time since then has to be run first
+            const bool is_early = std::isfinite(start_s) && start_s < -kMostEarlyS;
+            tilenca_array_add_tile(a, ppm, is_early ? -kMostEarlyS : start_s);
         }
         break;
     case 1:
