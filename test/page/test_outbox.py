@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from tilenca.page.outbox import MOST_CHANGES, MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox
 from tilenca.protocol import stream
-from tilenca.protocol.sentences import TileSentence, framed, parse_sentence
+from tilenca.protocol.sentences import HelloSentence, TileSentence, framed, parse_sentence
 
 PORTS = [f"tile-{number:02d}" for number in range(1, 5)]
 
@@ -15,7 +15,8 @@ def tile(port: str, updates: int) -> stream.StreamEvent:
 
 
 def shows(port: str, label: str, time_s: float = 0) -> stream.StreamEvent:
-    return stream.raw_event(time_s, port, framed(f"TILE,1,7,7,{label},4,3,----,80").strip())
+    sure = "4,3" if label else ","
+    return stream.raw_event(time_s, port, framed(f"TILE,1,7,7,{label},{sure},----,80").strip())
 
 
 def starts(port: str, asked: bool = False) -> stream.StreamEvent:
@@ -135,7 +136,7 @@ def labels_shown(given_events: list[stream.StreamEvent]) -> list[tuple[str, str,
         sentence = parse_sentence(event["raw"]) if "raw" in event else None
         if isinstance(sentence, TileSentence):
             label = sentence.label
-        elif event.get("open") is False or ("raw" in event and not event.get("asked")):
+        elif event.get("open") is False or (isinstance(sentence, HelloSentence) and not event.get("asked")):
             label = ""
         else:
             continue
