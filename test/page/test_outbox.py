@@ -20,7 +20,7 @@ def shows(port: str, label: str, time_s: float = 0) -> stream.StreamEvent:
 
 
 def starts(port: str, asked: bool = False) -> stream.StreamEvent:
-    event = stream.raw_event(0, port, framed("HELLO,3,1,0000,21,10,20,0,0,00000000,255").strip())
+    event = stream.raw_event(0, port, framed("HELLO,3,1,D968,21,10,20,0,01,54AB570B,255").strip())
     return {**event, "asked": True} if asked else event
 
 
@@ -147,13 +147,13 @@ def labels_shown(given_events: list[stream.StreamEvent]) -> list[tuple[str, str,
 
 
 changes = st.one_of(
-    st.builds(shows, st.sampled_from(PORTS), st.sampled_from(["", "3", "8"]), st.floats(0, 9)),
-    st.builds(starts, st.sampled_from(PORTS), st.booleans()),
-    st.builds(stream.open_event, st.floats(0, 9), st.sampled_from(PORTS), st.booleans(), st.just("")),
+    st.builds(shows, st.sampled_from(PORTS[:2]), st.sampled_from(["", "3", "8"]), st.floats(0, 9)),
+    st.builds(starts, st.sampled_from(PORTS[:2]), st.booleans()),
+    st.builds(stream.open_event, st.floats(0, 9), st.sampled_from(PORTS[:2]), st.booleans(), st.just("")),
 )
 
 
-@given(st.lists(st.tuples(changes, st.booleans()), max_size=80))
+@given(st.lists(st.tuples(changes, st.sampled_from([False] * 5 + [True])), min_size=20, max_size=80))
 def test_a_slow_client_counts_as_many_changes_of_labels_as_a_quick_one(
     given_events: list[tuple[stream.StreamEvent, bool]],
 ) -> None:
