@@ -249,3 +249,29 @@ def test_another_site_gets_no_connection(browser: Browser, server: PageServer) -
             server.url.replace("http", "ws") + "stream",
         )
     assert outcome == "closed"
+
+
+def test_a_browser_that_paints_seldom_counts_the_same_changes_of_mind(
+    browser: Browser, server: PageServer
+) -> None:
+    """Of what it was not told in time it gets the latest; of changes it has to get all."""
+    texts = []
+    for wait_ms in (0, 700):
+        with new_visit(browser) as visit:
+            visit.page.add_init_script(
+                f"""{{ const soon = requestAnimationFrame;
+                window.requestAnimationFrame = (act) => setTimeout(() => soon(act), {wait_ms}); }}"""
+            )
+            visit.page.goto(f"{server.url}?shape=digits/8&seed=0&speed=1&spread=0.1&until=1.5")
+            visit.page.get_by_role("button", name="Go on").wait_for()
+            texts.append(
+                visit.page.evaluate(
+                    """async () => {
+                      for (let n = 0; n < 12; n++) await new Promise(requestAnimationFrame);
+                      return document.getElementById("agreement-text").textContent;
+                    }"""
+                )
+            )
+            assert visit.complaints == []
+    assert texts[0] == texts[1]
+    assert int(texts[0].split(", ")[1].split()[0]) > 10

@@ -119,3 +119,12 @@ def test_what_begins_in_a_long_slice_is_played_from_then_on() -> None:
         emulation.pass_time(3.0)
         lines = emulation.array[0].read_serial().decode().splitlines()
     assert "side N: pass, loop-back" in lines
+
+
+def test_a_run_that_begins_when_a_fault_falls_due_is_as_long_as_any() -> None:
+    with boards("skew=9000@1:1.7") as emulation:
+        array = emulation.array
+        emulation.pass_time(1.7 - array.time_s - 2e-6)  # it comes to that time by rounding
+        assert array.time_s == pytest.approx(1.7, abs=1e-9)
+        emulation.pass_time(0.05)
+        assert array.time_s == pytest.approx(1.75, abs=16e-6)

@@ -1,17 +1,27 @@
-"""The outbox: a client that reads gets all, one that is slow gets the latest, and nothing grows."""
+"""The outbox: one that reads gets all, one that is slow the latest and all changes, and nothing grows."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tilenca.page.outbox import MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox
+from tilenca.page.outbox import MOST_CHANGES, MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox
 from tilenca.protocol import stream
-from tilenca.protocol.sentences import framed
+from tilenca.protocol.sentences import HelloSentence, TileSentence, framed, parse_sentence
 
 PORTS = [f"tile-{number:02d}" for number in range(1, 5)]
 
 
 def tile(port: str, updates: int) -> stream.StreamEvent:
     return stream.raw_event(updates, port, framed(f"TILE,1,{updates},{updates},4,4,3,----,80").strip())
+
+
+def shows(port: str, label: str, time_s: float = 0) -> stream.StreamEvent:
+    sure = "4,3" if label else ","
+    return stream.raw_event(time_s, port, framed(f"TILE,1,7,7,{label},{sure},----,80").strip())
+
+
+def starts(port: str, asked: bool = False) -> stream.StreamEvent:
+    event = stream.raw_event(0, port, framed("HELLO,3,1,D968,21,10,20,0,01,54AB570B,255").strip())
+    return {**event, "asked": True} if asked else event
 
 
 def link(port: str, side: str, sent: int) -> stream.StreamEvent:
@@ -28,6 +38,8 @@ def test_events_come_in_their_order() -> None:
 
 def test_of_what_waits_the_latest_counts() -> None:
     outbox = Outbox()
+    outbox.put([tile(port, 0) for port in PORTS])
+    assert len(outbox.take()[1]) == len(PORTS)
     for updates in range(1000):
         outbox.put([tile(port, updates) for port in PORTS])
         outbox.put([link("tile-01", "NESW"[updates % 4], updates)])
@@ -114,3 +126,51 @@ def test_the_last_of_everything_always_arrives(given_events: list[stream.StreamE
     )
     if given_events:
         assert taken[-1] == given_events[-1]
+
+
+def labels_shown(given_events: list[stream.StreamEvent]) -> list[tuple[str, str, float]]:
+    """The changes of labels that a page notes, with their times."""
+    labels: dict[str, str] = {}
+    noted = []
+    for event in given_events:
+        sentence = parse_sentence(event["raw"]) if "raw" in event else None
+        if isinstance(sentence, TileSentence):
+            label = sentence.label
+        elif event.get("open") is False or (isinstance(sentence, HelloSentence) and not event.get("asked")):
+            label = ""
+        else:
+            continue
+        if label != labels.get(event["port"], ""):
+            labels[event["port"]] = label
+            noted.append((event["port"], label, event["time"]))
+    return noted
+
+
+changes = st.one_of(
+    st.builds(shows, st.sampled_from(PORTS[:2]), st.sampled_from(["", "3", "8"]), st.floats(0, 9)),
+    st.builds(starts, st.sampled_from(PORTS[:2]), st.booleans()),
+    st.builds(stream.open_event, st.floats(0, 9), st.sampled_from(PORTS[:2]), st.booleans(), st.just("")),
+)
+
+
+@given(st.lists(st.tuples(changes, st.sampled_from([False] * 5 + [True])), min_size=20, max_size=80))
+def test_a_slow_client_counts_as_many_changes_of_labels_as_a_quick_one(
+    given_events: list[tuple[stream.StreamEvent, bool]],
+) -> None:
+    outbox = Outbox()
+    got = []
+    for event, is_read in given_events:
+        outbox.put([event])
+        got += outbox.take()[1] if is_read else []
+    got += outbox.take()[1]
+    assert labels_shown(got) == labels_shown([event for event, _ in given_events])
+
+
+def test_changes_of_labels_have_an_end_and_what_a_tile_shows_has_not() -> None:
+    outbox = Outbox()
+    first = [shows("tile-01", "3"), stream.open_event(0, "tile-01", False, "no power")]
+    outbox.put(first)
+    outbox.put([shows("tile-02", "38"[n % 2], n) for n in range(2 * MOST_CHANGES)])
+    _, events = outbox.take()
+    assert events[:2] == first
+    assert events[2:] == [shows("tile-02", "38"[n % 2], n) for n in range(MOST_CHANGES - 1, 2 * MOST_CHANGES)]

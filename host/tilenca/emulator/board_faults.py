@@ -36,7 +36,6 @@ EXAMPLES = {
     "low": "low=PE3@7:2-3",
     "joined": "joined=PH4+PH3@7",
     "led": "led=3@7",
-    "resonator": "resonator=2.5@7",
     "plug": "plug@1N",
 }
 PIN_KINDS = ("high", "low", "joined")
@@ -150,10 +149,11 @@ class BoardFaults(Faults):
         restarted: set[int] = set()
         end_s = self.array.time_s + seconds
         while (left_s := end_s - (now_s := self.array.time_s)) > LEAST_S:
+            planned = len(self._due)
             restarted |= set(super().run(self._step_s(left_s)))
             for act in list(self._going.values()):
                 act()
-            if self.array.time_s == now_s:
+            if self.array.time_s == now_s and len(self._due) == planned:
                 break  # a tile is halted: whoever halted it goes on
         return sorted(restarted)
 
