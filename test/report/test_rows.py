@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 
 from tilenca import cli
+from tilenca.base import paths
+from tilenca.model.file import load_model
 from tilenca.report.rows import (
     BYTES,
     SECONDS,
@@ -142,7 +144,7 @@ def test_states_are_counted_and_none_differs(capsys: pytest.CaptureFixture[str])
         "--shape",
         "1",
         "--updates",
-        "8",
+        "30",
         "--seed",
         "4",
     )
@@ -151,8 +153,9 @@ def test_states_are_counted_and_none_differs(capsys: pytest.CaptureFixture[str])
     )
     assert differ.value == 0
     assert states.value is not None
-    assert states.value >= 5 * 9
-    assert (count.value, count.unit) == (42 * states.value, BYTES)
+    assert states.value >= 5 * 30
+    bytes_each = 2 * load_model(paths.DEFAULT_MODEL).dimensions.channels
+    assert (count.value, count.unit) == (bytes_each * states.value, BYTES)
     assert messages.value is not None
     assert again.value is not None
     assert messages.value > again.value
