@@ -46,9 +46,9 @@ def test_the_eight_steps_are_done_by_hand(visit: Visit, server: PageServer) -> N
     done(visit, 7, "Each group agrees with itself")
     visit.wait_for_verdict("All 16 tiles show 8")
     page.get_by_role("button", name="Draw", exact=True).click()
-    visit.drag(visit.middle("[data-port=tile-05]"), visit.middle("[data-port=tile-13]"))
-    for tile in ("14", "15"):
-        visit.drag(visit.middle(f"[data-port=tile-{tile}]"), visit.middle(f"[data-port=tile-{tile}]"))
+    for first, last in (("05", "13"), ("06", "16"), ("08", "09"), ("14", "15")):  # a T is left, and drawn
+        visit.drag(visit.middle(f"[data-port=tile-{first}]"), visit.middle(f"[data-port=tile-{last}]"))
+    visit.drag(visit.middle(".spot[data-place='1,1']"), visit.middle(".spot[data-place='2,1']"))
     done(visit, 8, "That is all")
     lesson.wait_for(state="hidden")
     assert "lesson" not in page.url

@@ -5,10 +5,11 @@ import pytest
 from support.avr import Compile
 from support.emulate import emulate, report
 from tilenca.base.errors import UsageError
-from tilenca.base.paths import DEFAULT_SHAPES, FIRMWARE_ELF
+from tilenca.base.paths import DEFAULT_MODEL, DEFAULT_SHAPES, FIRMWARE_ELF
 from tilenca.commands.emulate_states import StateCheck
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.greeting import firmware_settings
+from tilenca.model.file import load_model
 from tilenca.shapes.file import load_task
 
 pytestmark = pytest.mark.usefixtures("firmware")
@@ -22,7 +23,7 @@ def test_no_state_differs_with_faults_and_without(
     told = report(capsys, *words)["states"]
     assert told["first_difference"] is None
     assert told["states"] > 150
-    assert told["bytes"] == told["states"] * 42
+    assert told["bytes"] == told["states"] * 2 * load_model(DEFAULT_MODEL).dimensions.channels
     assert told["messages"] > told["read_again"]
     assert (told["read_again"] > 10) == bool(faults), "lost messages are read again"
 

@@ -105,10 +105,11 @@ def test_a_model_without_a_dash_says_so() -> None:
 
 def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tmp_path: Path) -> None:
     model, own = DIGITS, load_task(paths.DEFAULT_SHAPES)
+    ours = f"{model.model_id:04X}"
     assert "was made of this file, and does not hold it" in why_wrong(model, own)
     (tmp_path / "mine.toml").write_text(shape_table("4", ["#.", "##"]), encoding="utf-8")
     told = why_wrong(model, load_task(tmp_path / "mine.toml"))
-    assert told.startswith("model D968 was made of digits.toml digits-3x3.toml, and takes these for")
+    assert told.startswith(f"model {ours} was made of digits.toml digits-3x3.toml, and takes these for")
     assert f"tilenca make {tmp_path / 'mine.toml'}; more reasons: docs/how-to/debug.md" in told
     without = why_wrong(replace(model, metadata={}), own)
-    assert without.startswith("model D968 was made of other drawings")
+    assert without.startswith(f"model {ours} was made of other drawings")

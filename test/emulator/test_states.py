@@ -5,15 +5,17 @@ from collections import Counter
 import pytest
 
 from support.avr import Compile
+from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.base.sides import EAST, WEST
 from tilenca.emulator import Array
 from tilenca.emulator.states import StateWatch, TileState
+from tilenca.model.file import load_model
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.sentences import HelloSentence, TileSentence
 
-CHANNELS = 21
+CHANNELS = load_model(paths.DEFAULT_MODEL).dimensions.channels
 SECONDS = 0.6
 
 

@@ -2,13 +2,16 @@
 
 from pathlib import Path
 
+from tilenca.base import paths
 from tilenca.emulator import EAST, NORTH, SOUTH, WEST, Array
 from tilenca.emulator.array import Link
 from tilenca.emulator.traffic import Traffic
+from tilenca.model.file import load_model
 from tilenca.protocol.frames import cobs_decode, decode_payload
 
 ROW: Link = (0, EAST, 1, WEST)
 COLUMN: Link = (0, SOUTH, 2, NORTH)
+CHANNELS = load_model(paths.DEFAULT_MODEL).dimensions.channels
 
 
 def test_both_directions_of_each_cable_are_heard_in_order(firmware: Path) -> None:
@@ -20,7 +23,7 @@ def test_both_directions_of_each_cable_are_heard_in_order(firmware: Path) -> Non
     ends = {(frame.tile, frame.side) for frame in frames}
     assert ends == {(0, EAST), (1, WEST), (0, SOUTH), (2, NORTH)}
     assert [frame.time_s for frame in frames] == sorted(frame.time_s for frame in frames)
-    heard = [decode_payload(cobs_decode(frame.data) or b"", 21) for frame in frames]
+    heard = [decode_payload(cobs_decode(frame.data) or b"", CHANNELS) for frame in frames]
     assert all(one is not None and one.side == frame.side for one, frame in zip(heard, frames, strict=True))
 
 

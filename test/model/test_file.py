@@ -95,8 +95,8 @@ def test_cut_or_changed_weights_are_refused(model: Path, damage: Callable[[bytes
     assert refusal(model).startswith(str(path))
 
 
-def test_the_default_widths_are_those_of_the_shipped_digits() -> None:
-    assert Dimensions() == load_model(paths.DEFAULT_MODEL).dimensions
+def test_the_default_widths_are_those_of_digits_as_drawn() -> None:
+    assert Dimensions() == load_model(paths.MODELS / "digits-drawn").dimensions
     assert RECIPES["full"].hidden == Dimensions().hidden1
 
 

@@ -55,7 +55,7 @@ def test_steps_count_from_the_last_change_and_old_messages_last_six_periods(
     assert changed is not None
     to_one = changed.chosen == 1
     times = changed.trajectory.converged_at[to_one]
-    assert 6 <= np.median(times) <= 15
+    assert 6 <= np.median(times) <= 18
     assert times.min() > 2
 
 

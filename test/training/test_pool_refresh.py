@@ -24,7 +24,7 @@ from tilenca.training.pool_refresh import (
 )
 from tilenca.training.recipes import RECIPES
 
-MODEL = load_model(paths.MODELS / "digits")
+MODEL = load_model(paths.MODELS / "digits-drawn")
 
 
 @pytest.fixture(scope="module")

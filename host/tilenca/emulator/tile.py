@@ -113,10 +113,7 @@ class EmulatedTile:
         self._call("tile_set_power", on)
 
     def set_drift(self, ppm_per_s: float) -> None:
-        """From now on the clock error grows by so many ppm in each second, in steps of 1/15 s.
-
-        It grows to 500,000 ppm at most, either way.
-        """
+        """From now on the clock error grows by so many ppm a second, to 500,000 at most, every 1/15 s."""
         self._call("tile_set_drift", ppm_per_s)
 
     def set_skew(self, ppm: float) -> None:
