@@ -1,7 +1,8 @@
 """What a trained model can do and what it cannot, in words, from its measurements."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 # The keys of measurements (docs/TRAINING.md explains them), as a person asks.
 QUESTIONS = {
@@ -39,7 +40,8 @@ def abilities(metrics: Mapping[str, Any]) -> Iterator[str]:
             yield f"{title}: {', '.join(QUESTIONS[key] for key in ordered)}"
 
 
-class Targets(NamedTuple):
+@dataclass(frozen=True)
+class Targets:
     """Of one kind of measurement, as far as it has targets.
 
     Attributes:
