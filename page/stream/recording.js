@@ -12,7 +12,7 @@ function subjectOf(event, place) {
   const kind = ["place", "open", "display", "cable", "fault", "health", "classes"].find((one) => one in event);
   if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
   if (event.raw === undefined) return "";
-  const [name, , side] = event.raw.split(",");
+  const [name, , , side] = event.raw.split(",");
   return `raw ${event.port} ${name === "$LINK" ? `${name} ${side}` : name}`;
 }
 

@@ -23,7 +23,7 @@ export const portName = (index) => `tile-${String(index + 1).padStart(2, "0")}`;
 
 /** The name of a sentence, and the side of a `$LINK`. @param {string} raw */
 function subjectOf(raw) {
-  const [name, , side] = raw.split(",");
+  const [name, , , side] = raw.split(",");
   return name === "$LINK" ? `${name} ${side}` : name;
 }
 
