@@ -134,21 +134,9 @@ void images(const uint8_t* bytes, size_t size) {
     array.fault(0);
 }
 
-const char* names() {
-    return "snapshots, images or calls";
-}
-
-Target target_of(const char* name) {
-    const struct {
-        const char* name;
-        Target target;
-    } all[] = {{"snapshots", snapshots}, {"images", images}, {"calls", calls}};
-    for (const auto& one : all) {
-        if (strcmp(one.name, name) == 0) {
-            return one.target;
-        }
-    }
-    return nullptr;
+const std::vector<Named>& targets() {
+    static const std::vector<Named> all = {{"snapshots", snapshots}, {"images", images}, {"calls", calls}};
+    return all;
 }
 
 } // namespace fuzz

@@ -185,21 +185,10 @@ void settings(const uint8_t* bytes, size_t size) {
     must(marking ? after.tile_id == found.tile_id : after.serial == found.serial, "the other block changed");
 }
 
-const char* names() {
-    return "frames, commands or settings";
-}
-
-Target target_of(const char* name) {
-    const struct {
-        const char* name;
-        Target target;
-    } all[] = {{"frames", frames}, {"commands", commands}, {"settings", settings}};
-    for (const auto& one : all) {
-        if (strcmp(one.name, name) == 0) {
-            return one.target;
-        }
-    }
-    return nullptr;
+const std::vector<Named>& targets() {
+    static const std::vector<Named> all = {
+        {"frames", frames}, {"commands", commands}, {"settings", settings}};
+    return all;
 }
 
 } // namespace fuzz

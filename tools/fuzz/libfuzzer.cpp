@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
     const char* name = getenv("FUZZ_TARGET");
     target = name == nullptr ? nullptr : tilenca::fuzz::target_of(name);
     if (target == nullptr) {
-        fprintf(stderr, "FUZZ_TARGET is one of %s\n", tilenca::fuzz::names());
+        fprintf(stderr, "FUZZ_TARGET is one of %s\n", tilenca::fuzz::names().c_str());
         exit(2);
     }
     return 0;

@@ -10,7 +10,7 @@
 int main(int count, char** words) {
     const tilenca::fuzz::Target target = count > 2 ? tilenca::fuzz::target_of(words[1]) : nullptr;
     if (target == nullptr) {
-        fprintf(stderr, "replay TARGET FILE..., where TARGET is %s\n", tilenca::fuzz::names());
+        fprintf(stderr, "replay TARGET FILE..., where TARGET is %s\n", tilenca::fuzz::names().c_str());
         return 2;
     }
     for (int i = 2; i < count; ++i) {

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <string>
+#include <vector>
+
 namespace tilenca {
 namespace fuzz {
 
@@ -38,11 +41,33 @@ void images(const uint8_t* bytes, size_t size);
 // Calls of the emulator's C interface, one after the other, with any arguments.
 void calls(const uint8_t* bytes, size_t size);
 
-// The names of the targets of a program, and what stands between them; for its help.
-const char* names();
+struct Named {
+    const char* name;
+    Target target;
+};
+
+// The targets of a program.
+const std::vector<Named>& targets();
+
+// Their names, and what stands between them; for its help.
+inline std::string names() {
+    std::string text;
+    for (const Named& one : targets()) {
+        const bool is_last = &one == &targets().back();
+        text += (text.empty() ? "" : is_last ? " or " : ", ") + std::string(one.name);
+    }
+    return text;
+}
 
 // The target of a name; nullptr: this program has none.
-Target target_of(const char* name);
+inline Target target_of(const std::string& name) {
+    for (const Named& one : targets()) {
+        if (one.name == name) {
+            return one.target;
+        }
+    }
+    return nullptr;
+}
 
 } // namespace fuzz
 } // namespace tilenca
