@@ -58,7 +58,8 @@ class RandomModel {
         return {id,
                 static_cast<uint8_t>(looks_.size()),
                 {hidden1_.layer(), hidden2_.layer(), output_.layer()},
-                FlashView<Look>(looks_.data())};
+                FlashView<Look>(looks_.data()),
+                0};
     }
 
   private:
