@@ -104,7 +104,7 @@ format: setup-check ## format all Python and C++
 train: setup-train ## train a model of the digits into build/models/digits
 	@$(TILENCA) train --shapes shapes/digits.toml --out build/models/digits
 
-bench: setup-train ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md, beside the last run
+bench: setup-train setup-test ## print what the firmware costs and how fast everything is, into docs/BENCHMARKS.md, beside the last run
 	@$(PIO) run -s -e $(ENV)
 	@rm -f build/bench/figures.jsonl
 	@$(TOOL) bench.overview $(ELF)
@@ -116,6 +116,7 @@ bench: setup-train ## print what the firmware costs and how fast everything is, 
 	@$(TOOL) bench.fleet
 	@$(TOOL) bench.emulator --write docs/BENCHMARKS.md
 	@$(TOOL) bench.web --write docs/BENCHMARKS.md
+	@$(TOOL) bench.page --write docs/BENCHMARKS.md
 	@$(TOOL) bench.sweep --write docs/SWEEPS.md
 	@$(TOOL) bench.history
 

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from bench import chromium
+from page.visit import browser_at
 
 SIZES = {"phone": (390, 844), "laptop": (1280, 800), "projector": (1920, 1080)}
 # A machine that does much else besides is slow, and not wrong.
@@ -44,11 +45,8 @@ def running_browser() -> Iterator[Browser]:
         if os.environ.get("CI"):
             pytest.fail(reason)
         pytest.skip(reason)
-    with sync_playwright() as playwright:
-        # The sandbox needs rights that root in a container has not; only our own page is opened.
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+    with browser_at(path) as browser:
         yield browser
-        browser.close()
 
 
 class Visit:
