@@ -84,6 +84,7 @@ void Chip::attach(Peripheral& peripheral) {
         at_address_[address] = &peripheral;
         const bool is_stored = peripheral.reads_as_stored(address);
         cpu_.special[address] = is_stored ? kWritesThroughBus : kReadsThroughBus | kWritesThroughBus;
+        cpu_.special[address] |= peripheral.is_memory_at_times(address) ? kChangesItsWay : 0;
     }
     for (const uint8_t vector : peripheral.vectors()) {
         at_vector_[vector] = &peripheral;

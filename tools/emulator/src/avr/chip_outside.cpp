@@ -147,6 +147,9 @@ void Chip::state(Archive& archive) {
             forget_past(id);
         }
     }
+    for (auto& timer : timers_) {
+        timer->take_back();
+    }
     flash_state(archive);
     archive(cpu_, schedule_, warnings_);
     for (Peripheral* peripheral : all_) {

@@ -39,6 +39,7 @@ void Chip::update_clocks(uint64_t cycle) {
         if (timers_[i]->has_own_prescaler()) { // it is a part of the timer, and stands with it
             own_prescaler_.set_stands(stands, cycle);
         }
+        timers_[i]->take_back(); // a write shall not pass it by from now on
         set(*timers_[i], stands, reduced);
     }
     for (unsigned i = 0; i < usarts_.size(); i++) {

@@ -20,6 +20,8 @@ constexpr uint64_t kNever = ~uint64_t{0};
 constexpr uint64_t kLastCycle = uint64_t{1} << 62; // a chip that runs for ever does not reach it
 // I/O addresses whose access goes through the bus.
 constexpr uint8_t kReadsThroughBus = 1, kWritesThroughBus = 2;
+// Whether it does changes while the chip runs.
+constexpr uint8_t kChangesItsWay = 4;
 
 // What the core needs from the rest of the chip.
 struct Bus {
@@ -48,7 +50,7 @@ struct Bus {
 struct Cpu {
     uint8_t data[kDataBytes];    // first, so that a register's address is its number
     uint64_t limit = 0;          // the cycle at which the running instructions hand control back
-    uint8_t special[kSramStart]; // kReadsThroughBus, kWritesThroughBus
+    uint8_t special[kSramStart]; // kReadsThroughBus, kWritesThroughBus, kChangesItsWay
     const Instruction* program = nullptr;
     const Program* image = nullptr; // which `program` belongs to
     Counts* counts = nullptr;       // of its instructions, if they are counted

@@ -49,6 +49,8 @@ class Peripheral {
     virtual void write(uint16_t address, uint8_t value, uint64_t cycle) = 0;
     // Whether reading that register is reading its stored byte: then nobody needs to ask.
     virtual bool reads_as_stored(uint16_t /*address*/) const { return false; }
+    // Whether there are times when it is no more than memory: its part of the chip then says so to the core.
+    virtual bool is_memory_at_times(uint16_t /*address*/) const { return false; }
     virtual void on_event(Slot /*slot*/, uint64_t /*cycle*/) {}
     virtual std::vector<uint8_t> vectors() const { return {}; }
     virtual void interrupt_taken(uint8_t /*vector*/) {}

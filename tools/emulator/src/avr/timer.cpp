@@ -1,5 +1,6 @@
 #include "avr/timer.h"
 
+#include "avr/timer_registers.h"
 #include "avr/vectors.h"
 
 namespace tilenca::avr {
@@ -54,10 +55,6 @@ constexpr WaveMode kWideModes[16] = {
     {Wave::Fast, Top::CompareA, 0},
 };
 
-// Offsets of a wide timer's registers from TCCRnA: TCCRnC, then pairs of bytes from here on.
-constexpr unsigned kWideForce = 2, kWideCount = 4, kWideCapture = 6, kWideCompare = 8, kWideEnd = 14;
-constexpr unsigned kNarrowCount = 2, kNarrowCompare = 3, kNarrowEnd = 5;
-
 } // namespace
 
 Timer::Timer(const Core& core, Gpio& gpio, Prescaler& prescaler, unsigned number)
@@ -89,6 +86,9 @@ std::vector<uint8_t> Timer::vectors() const {
 }
 
 void Timer::sync(uint64_t cycle) {
+    if (lent_ != 0) {
+        take_back();
+    }
     if (clock_stands()) {
         return;
     }
@@ -152,6 +152,7 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
     }
     if (const unsigned offset = address - base_; offset < kNarrowEnd && (plain_ >> offset & 1) != 0) {
         write_plainly(offset, value);
+        lend(offset);
         return;
     }
     cycle++;
@@ -181,35 +182,6 @@ void Timer::write(uint16_t address, uint8_t value, uint64_t cycle) {
 
 unsigned Timer::first_compare() const {
     return is_wide() ? kWideCompare : kNarrowCompare;
-}
-
-// Some programs keep their variables in the registers of a timer that stands: then nothing else comes of a
-// write.
-void Timer::note_plain() {
-    plain_ = 0;
-    if (divisor_ == 0 && !is_wide() && !is_observed_) {
-        plain_ = 1 << kNarrowCount;
-        for (unsigned i = 0; i < channels(); i++) {
-            plain_ |= static_cast<uint8_t>(!compare_matters(i) << (kNarrowCompare + i));
-        }
-    }
-}
-
-void Timer::write_plainly(unsigned offset, uint8_t value) {
-    if (offset == kNarrowCount) {
-        counter_.set_count(value);
-    } else {
-        counter_.set_compare(offset - kNarrowCompare, value);
-        byte(static_cast<uint16_t>(base_ + offset)) = value;
-    }
-}
-
-// Whether anything but a flag that nobody waits for can come of a compare register's new value.
-bool Timer::compare_matters(unsigned offset) const {
-    const unsigned channel = is_wide() ? offset / 2 : offset;
-    const bool is_waited_for = ((byte(mask_register_) | told_flags_) & kFlagCompareA << channel) != 0;
-    const WaveMode& mode = counter_.mode();
-    return is_waited_for || driving_[channel] || mode.top == Top::CompareA || mode.wave >= Wave::Fast;
 }
 
 void Timer::write_value(unsigned offset, uint8_t value) {

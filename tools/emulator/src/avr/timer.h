@@ -18,6 +18,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     std::vector<uint16_t> registers() const override;
     uint8_t read(uint16_t address, uint64_t cycle) override;
     bool reads_as_stored(uint16_t address) const override;
+    bool is_memory_at_times(uint16_t address) const override;
     void write(uint16_t address, uint8_t value, uint64_t cycle) override;
     void on_event(Slot slot, uint64_t cycle) override;
     std::vector<uint8_t> vectors() const override;
@@ -43,6 +44,8 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     void prescaler_restarts(uint64_t cycle) { sync(cycle); }
     void prescaler_restarted() { reschedule(); }
     bool has_own_prescaler() const { return number_ == 2; }
+    // Registers that were memory go through the bus again.
+    void take_back();
 
   private:
     void clock_stops(uint64_t cycle) override;
@@ -65,6 +68,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     unsigned first_compare() const;
     void note_plain();
     void write_plainly(unsigned offset, uint8_t value);
+    void lend(unsigned offset);
     bool compare_matters(unsigned offset) const;
     void set_compare(unsigned channel, uint16_t value);
     uint8_t read_value(unsigned offset);
@@ -95,6 +99,7 @@ class Timer final : public Peripheral, public PinSource, private PinWatcher {
     uint64_t capture_due_ = kNever; // an edge that the noise canceller has not let pass yet
     uint8_t told_flags_ = 0;
     uint8_t plain_ = 0; // a bit per register, from TCCRnA on: no more than its value comes of a write
+    uint8_t lent_ = 0;  // a bit per register: it is memory, and the counter does not know its value
     std::function<void(uint64_t)> on_flags_ = [](uint64_t) {};
 };
 

@@ -164,6 +164,9 @@ void Timer::clock_starts(uint64_t cycle, uint64_t) {
 }
 
 void Timer::state(Archive& archive) {
+    if (!archive.loading() && divisor_ == 0) { // when somebody looked at a timer that stands tells nothing
+        synced_ = core_.cpu.cycle;
+    }
     archive(counter_, driving_, temp_, divisor_, synced_, external_clock_, comparator_captures_, capture_due_,
             told_flags_);
     archive.require(

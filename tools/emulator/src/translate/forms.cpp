@@ -178,6 +178,15 @@ Form form_of(const avr::Instruction& in, const uint8_t* special) {
     if (in.run == avr::ops::in && (in.k == kStackPointer || in.k == kStackPointer + 1)) {
         return {Kind::Plain, in.k == kStackPointer ? "%d = sp & 0xFF;" : "%d = sp >> 8;", 1};
     }
+    const bool is_io = in.k >= avr::kIoStart && in.k < avr::kSramStart;
+    if (is_io && (special[in.k] & avr::kChangesItsWay) != 0) {
+        if (in.run == avr::ops::in || in.run == lds) {
+            return {Kind::Plain, "%b %d = DATA(%k);", found->second.cycles};
+        }
+        if (in.run == out || in.run == sts) {
+            return {Kind::Plain, "%B DATA(%k) = static_cast<uint8_t>(%d);", found->second.cycles};
+        }
+    }
     if ((reads && (special[in.k] & avr::kReadsThroughBus) != 0) ||
         (writes && (special[in.k] & avr::kWritesThroughBus) != 0) ||
         (in.run == lds && !is_stored(in.k, avr::kReadsThroughBus, special)) ||
@@ -218,6 +227,12 @@ std::string filled(const Form& form, const avr::Instruction& in, const std::stri
             break;
         case 's':
             text += "if (RARE(!IS_SRAM(a))) " + leave;
+            break;
+        case 'b':
+            text += "if (RARE((SPECIAL(" + std::to_string(in.k) + ") & 1) != 0)) " + leave;
+            break;
+        case 'B':
+            text += "if (RARE((SPECIAL(" + std::to_string(in.k) + ") & 2) != 0)) " + leave;
             break;
         case 'i':
             text += "if (RARE((w & 0x80) != 0 && !INTERRUPTS)) " + leave;

@@ -1,10 +1,10 @@
 // What each instruction becomes in C++.
 //
 // A form is a line of C++ with gaps: %d and %r are the operands' registers, %D and %R the next higher ones,
-// %c and %m the constant and its complement, %k the address or displacement. %s, %l, %p and %i leave the
-// block where an address `a` is outside SRAM, one is beyond readable flash, a push is one to be looked at, or
-// `w` switches interrupts on: the interpreter then executes the instruction. Registers are variables r0 to
-// r31 and sp.
+// %c and %m the constant and its complement, %k the address or displacement. %s, %l, %p, %i, %b and %B leave
+// the block where an address `a` is outside SRAM, one is beyond readable flash, a push is one to be looked
+// at, `w` switches interrupts on, or the I/O register at %k goes through the bus now, read or written: the
+// interpreter then executes the instruction. Registers are variables r0 to r31 and sp.
 #pragma once
 
 #include "avr/instruction.h"
@@ -35,7 +35,7 @@ struct Form {
 // `special`: what I/O addresses the interpreter must see, as in avr::Cpu.
 Form form_of(const avr::Instruction& instruction, const uint8_t* special);
 
-// The text with its gaps filled; %s, %l, %p and %i by `leave`, which follows a condition.
+// The text with its gaps filled; those that leave by `leave`, which follows a condition.
 std::string filled(const Form& form, const avr::Instruction& instruction, const std::string& leave);
 
 } // namespace tilenca::translate

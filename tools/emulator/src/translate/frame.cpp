@@ -10,7 +10,7 @@ namespace tilenca::translate {
 
 namespace {
 
-constexpr unsigned kTextVersion = 4; // one more with every change of what is emitted
+constexpr unsigned kTextVersion = 5; // one more with every change of what is emitted
 
 // What comes after the places of the core's members and before the functions.
 constexpr const char* kPrelude = R"text(
@@ -35,6 +35,7 @@ struct Instruction {
 #define REQUESTS MEMBER(const uint64_t, AT_REQUESTS)
 #define TRANSFER MEMBER(bool, AT_TRANSFER)
 #define INTERRUPTS MEMBER(bool, AT_INTERRUPTS)
+#define SPECIAL(address) MEMBER(const uint8_t, AT_SPECIAL + (address))
 #define FLASH MEMBER(const uint8_t* const, AT_FLASH)
 #define FLASH_LIMIT MEMBER(const uint32_t, AT_FLASH_LIMIT)
 #define PROGRAM MEMBER(const Instruction* const, AT_PROGRAM)
@@ -106,6 +107,7 @@ std::string places() {
            define("AT_REQUESTS", offsetof(avr::Cpu, requests)) +
            define("AT_TRANSFER", offsetof(avr::Cpu, transfer)) +
            define("AT_INTERRUPTS", offsetof(avr::Cpu, interrupts_on)) +
+           define("AT_SPECIAL", offsetof(avr::Cpu, special)) +
            define("AT_FLASH", offsetof(avr::Cpu, flash)) +
            define("AT_FLASH_LIMIT", offsetof(avr::Cpu, flash_limit)) +
            define("AT_PROGRAM", offsetof(avr::Cpu, program)) +
