@@ -41,7 +41,7 @@ def native(schedule: str, clocks: dict[str, list[float]], loss: float) -> dict[s
     switched_on = np.floor(min(0.0, float((times[0] - times[1]).min())) * 20) / 20
     setup = Setup(
         starts, neighbours, np.ones(cells, bool), np.repeat([4, 8], sizes), np.array(SEEDS, np.uint64),
-        loss, True, NAMES[schedule], Clocks(*times, switched_on) if on_clocks else None,
+        loss, True, NAMES[schedule], Clocks(times[0], times[1], times[2], switched_on) if on_clocks else None,
         False, "stuck", np.where(np.array(FAULTY) < 0, NOBODY, FAULTY + starts[:-1]), 10, 0,
         np.zeros((0, 3), np.int32),
     )  # fmt: skip
