@@ -64,15 +64,15 @@ def times() -> Times:
 
 def test_an_update_takes_as_long_as_the_cost_says(times: Times) -> None:
     size = load_model(paths.DEFAULT_MODEL).dimensions
-    taken = defaultdict(list)
+    taken: dict[int, list[float]] = defaultdict(list)
     for tile, neighbours in enumerate(FOUR.neighbours()):
         pairs = zip(times.begins[tile], times.ends[tile][1:], strict=False)
         taken[sum(other >= 0 for other in neighbours)] += [end - begin for begin, end in pairs][
             FIRST_UPDATES:
         ]
     assert {1, 2, 3} <= set(taken)
-    for neighbours, each in taken.items():
-        assert np.mean(each) == pytest.approx(computing_ms(size, neighbours), rel=0.15), neighbours
+    for count, each in taken.items():
+        assert np.mean(each) == pytest.approx(computing_ms(size, count), rel=0.15), count
 
 
 def test_an_update_reads_the_messages_that_have_arrived_by_the_times_of_tiles(times: Times) -> None:

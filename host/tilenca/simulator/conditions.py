@@ -12,6 +12,7 @@ from tilenca.simulator.tile_times import TileTimes
 ScheduleKind = Literal["random", "clock", "listing"]
 FaultKind = Literal["dead", "stuck", "away"]
 Switches = NDArray[np.int32]
+USUAL_LATENCY = (0.1, 0.9)
 MOST_LATENCY = 0.98  # a message arrives before its sender sends the next, with a period 1 % off
 
 
@@ -77,7 +78,7 @@ class Conditions:
     lost: Literal["held", "zero"] = "held"
     dead: float = 0.0
     drift: float = 0.01
-    latency: tuple[float, float] | TileTimes = (0.1, 0.9)
+    latency: tuple[float, float] | TileTimes = USUAL_LATENCY
     boot: float = 10.0
     fault: Fault | None = None
 
