@@ -339,7 +339,11 @@ def test_times_of_simulated_tiles_may_be_others(capsys: pytest.CaptureFixture[st
     words = ("--steps", "20", "--runs", "20", "--seed", "3")
     usual = evaluate(capsys, *words)
     assert evaluate(capsys, *words, "--boot-spread", "0.2", "--latency", "0.1-0.9") == usual
-    quick, slow = (evaluate(capsys, *words, "--latency", latency) for latency in ("0.1", "0.95"))
+    quick, slow, tiles = (
+        evaluate(capsys, *words, "--latency", latency) for latency in ("0.1", "0.95", "tiles")
+    )
+    assert quick["agreed_by_step"][7] > tiles["agreed_by_step"][7] > 0.1
+    assert tiles["agreed_by_step"] != slow["agreed_by_step"]
     assert quick["agreed_by_step"][7] > slow["agreed_by_step"][7]
     assert len(usual["agreed_by_step"]) == 20
 

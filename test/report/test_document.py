@@ -69,7 +69,7 @@ def test_simulator_and_tiles_are_compared_update_by_update() -> None:
         drawn = [replace(ROW, value=share, across=step) for step, share in enumerate(shares, 1)]
         return {f"gap.{engine}.60": [replace(ROW, across=None), *drawn]}
 
-    apart = apart_of(curve("slow", 0.1, 0.5, 0.9) | curve("tiles", 0.12, 0.45, 0.9))
+    apart = apart_of(curve("timed", 0.1, 0.5, 0.9) | curve("tiles", 0.12, 0.45, 0.9))
     assert apart is not None
     assert (round(apart[0], 6), apart[1]) == (5.0, 2)
     assert apart_of(curve("tiles", 0.1)) is None

@@ -10,6 +10,7 @@ from support.c_structures import Structures
 from tilenca.base import native_library
 
 UNITS = 65536
+STEP = 20 * UNITS
 INT_MAX = 2**31 - 1
 
 
@@ -34,7 +35,9 @@ class Given(Structures):
             "seeds": self.array("uint64_t", [1, 2]),
             "first": self.array("int64_t", [UNITS] * 4),
             "period": self.array("int64_t", [20 * UNITS] * 4),
-            "latency": self.array("int64_t", [UNITS] * 4),
+            "latency": self.array("int64_t", [UNITS] * 16),
+            "seed_latency": self.array("int64_t", [UNITS] * 16),
+            "line": self.array("int64_t", [UNITS] * 4),
             "faulty": self.array("int32_t", [1, -1]),
         }  # fmt: skip
         self.states = self.array("int16_t", [0] * 16)
@@ -110,10 +113,15 @@ BAD_SETUPS: list[dict[str, Any]] = [
         )
     ),
     *({"faulty": faulty} for faulty in ([2, -1], [-2, -1], [1, 1], [1, 4], [INT_MAX, -1])),
-    *({"start": start} for start in (1, UNITS, -1, -UNITS - 1, -(2**62))),
+    *({"start": start} for start in (1, UNITS, -1, -UNITS - 1, -(2**62), -STEP * 1_000_001)),
     *({"first": [first] * 4} for first in (2**60, -(2**60))),
     *({"period": [period] * 4} for period in (0, -1, 2**60)),
-    *({"latency": [20 * UNITS] * 3 + [latency]} for latency in (20 * UNITS, -1, 2**62)),
+    *(
+        {name: [UNITS] * 15 + [latency]}
+        for name in ("latency", "seed_latency")
+        for latency in (20 * UNITS, -1, 2**62)
+    ),
+    *({"line": [0] * 3 + [line]} for line in (-1, 2**62)),
 ]
 
 
@@ -122,6 +130,18 @@ def test_a_setup_that_cannot_be(given: Given, other: dict[str, Any]) -> None:
     setup = given.setup(**other)
     fails(given, "schedule_new", setup)
     fails(given, "grid_batch_new", given.model(), setup, given.states, given.shown)
+
+
+def test_tiles_that_were_switched_on_a_thousand_million_seconds_ago_are_refused(given: Given) -> None:
+    """Every tick before the first step is run, so that a mistake would never end."""
+    for start in (-1_000_001, -(10**9) * 50):  # a step takes 20 ms
+        words = fails(given, "schedule_new", given.setup(start=start * STEP))
+        assert "the start is" in words
+        assert f"{-1_000_000 * STEP} to 0" in words
+    for missing in ("seed_latency", "line"):
+        schedule = given.lib.tilenca_schedule_new(given.setup(**{missing: None}))
+        assert schedule != given.null
+        given.lib.tilenca_schedule_free(schedule)
 
 
 def test_arrays_and_structures_that_are_missing(given: Given) -> None:

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from support.restless_grids import LETTERS, block, simulator
+from tilenca.model.file import Dimensions
 from tilenca.shapes.batch import Batch
 from tilenca.simulator.chance import draw_setup
 from tilenca.simulator.conditions import Conditions, Fault, Rebuilding
 from tilenca.simulator.rollout_library import Setup
+from tilenca.simulator.tile_times import HALF_TICK, tile_times
 
 RUNS = 300
 
@@ -23,9 +25,9 @@ def drawn(conditions: Conditions, running: bool = False) -> Setup:
 def test_tiles_are_switched_on_one_period_before_their_first_update_and_the_last_one_at_step_0() -> None:
     setup = drawn(Conditions("clock", boot=4.0, drift=0.02))
     assert setup.clocks is not None
-    first, period, latency, start = setup.clocks
+    first, period, latency = setup.clocks.first, setup.clocks.period, setup.clocks.latency
     on = first - period
-    assert start == -4.0
+    assert setup.clocks.start == -4.0
     assert on.min() > -4.0
     assert np.maximum.reduceat(on, setup.starts[:-1]) == pytest.approx(0.0)
     assert 0.98 <= period.min() < 0.985 < 1.015 < period.max() <= 1.02
@@ -36,10 +38,25 @@ def test_tiles_are_switched_on_one_period_before_their_first_update_and_the_last
 def test_tiles_that_run_already_have_any_phase() -> None:
     setup = drawn(Conditions("clock"), running=True)
     assert setup.clocks is not None
-    first, period, _, start = setup.clocks
-    assert start == 0.0
+    first, period = setup.clocks.first, setup.clocks.period
+    assert setup.clocks.start == 0.0
     assert np.histogram(first / period, bins=4, range=(0, 1))[0] == pytest.approx(len(first) / 4, rel=0.1)
     assert setup.running
+
+
+def test_the_times_of_tiles_are_those_of_their_sides_and_of_as_many_neighbours_as_they_have() -> None:
+    times = tile_times(Dimensions(24, 96, 96), 20)
+    setup = drawn(Conditions("clock", latency=times, boot=4.0))
+    assert setup.clocks is not None
+    assert setup.clocks.start == -5.0
+    on = setup.clocks.first - setup.clocks.period
+    assert np.maximum.reduceat(on, setup.starts[:-1]) == pytest.approx(-times.ends)
+    assert setup.clocks.latency.shape == (len(on), 4)
+    neighbours = (setup.neighbours < len(on)).sum(axis=1)
+    most = setup.clocks.period[:, None]
+    expected = np.array(times.computing)[neighbours][:, None] + times.sending + HALF_TICK
+    assert setup.clocks.latency == pytest.approx(np.minimum(expected, most), abs=1e-5)
+    assert (setup.clocks.latency < most).all()
 
 
 def test_a_schedule_without_clocks_draws_none() -> None:

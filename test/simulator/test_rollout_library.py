@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from tilenca.simulator.rollout_library import (
     SCHEDULES,
     TICKS_PER_STEP,
     UNITS_PER_STEP,
+    Clocks,
     Setup,
     Tick,
     TickSchedule,
@@ -28,7 +30,7 @@ def setup(
     half, whole, tenth = (np.full(CELLS, value) for value in (0.5, 1.0, 0.1))
     return Setup(
         np.array([0, CELLS]), LINE, np.array(alive), np.zeros(CELLS, np.int64), np.array([7], np.uint64),
-        loss, True, schedule, (half, whole, tenth, -1.0) if schedule == "clock" else None, running,
+        loss, True, schedule, Clocks(half, whole, tenth, -1.0) if schedule == "clock" else None, running,
         "none", np.array([-1]), 0, 0, np.zeros((0, 3), np.int32),
     )  # fmt: skip
 
@@ -63,6 +65,47 @@ def test_on_clocks_each_tile_updates_once_a_step_and_is_heard_after_its_latency(
     assert set(np.diff(own)) == {TICKS_PER_STEP}
     sent = [own[0] - TICKS_PER_STEP, *own]  # the seed first
     assert arrived == [number + latency for number in sent if number + latency < len(found)]
+
+
+def arrivals(found: list[Tick], cell: int, side: int) -> list[int]:
+    """The ticks in which a cell's message arrives at a side."""
+    return [
+        number
+        for number, tick in enumerate(found)
+        if cell in tick.senders and tick.arrives[tick.senders == cell, side].any()
+    ]
+
+
+def on_other_clocks(**times: Any) -> list[Tick]:
+    given = setup("clock")
+    assert given.clocks is not None
+    return ticks(replace(given, clocks=replace(given.clocks, **times)))
+
+
+def test_a_message_arrives_at_each_side_after_its_own_latency_and_the_seed_after_its() -> None:
+    latency = np.tile([0.1, 0.2, 0.3, 0.7], (CELLS, 1))
+    found = on_other_clocks(latency=latency, seed_latency=latency / 2)
+    own = [number for number, tick in enumerate(found) if 1 in tick.updating]
+    for side, parts in ((1, 4), (3, 14)):
+        seed, *others = arrivals(found, 1, side)
+        assert seed == own[0] - TICKS_PER_STEP + parts // 2
+        assert others == [number + parts for number in own if number + parts < len(found)]
+
+
+def test_a_latency_for_all_sides_is_the_same_as_one_of_each() -> None:
+    for one, other in zip(
+        ticks(setup("clock", loss=0.3)), on_other_clocks(latency=np.full((CELLS, 4), 0.1)), strict=True
+    ):
+        np.testing.assert_array_equal(one.arrives, other.arrives)
+
+
+def test_a_tile_does_not_hear_a_message_that_was_on_its_line_when_it_was_switched_on() -> None:
+    first = np.array([0.5, 0.65, 2.5])  # the middle one is switched on 0.15 after the first
+    for line, heard in ((0.1, False), (0.2, False), (0.04, True)):
+        found = on_other_clocks(first=first, latency=np.full(CELLS, 0.2), line=np.full(4, line))
+        own = [number for number, tick in enumerate(found) if 0 in tick.updating]
+        assert (arrivals(found, 0, 1)[0] == own[0] - TICKS_PER_STEP + 4) == heard, line
+        assert own[0] + 4 in arrivals(found, 0, 1)
 
 
 def test_a_message_arrives_at_neighbours_only() -> None:

@@ -4,7 +4,7 @@ It is written from the description of the schedules, not from the code: times ar
 tiles has its messages, and it computes one run at a time.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -28,6 +28,12 @@ def split_mix(seed: int) -> Iterator[int]:
         z = ((seed ^ seed >> 30) * 0xBF58476D1CE4E5B9) & mask
         z = ((z ^ z >> 27) * 0x94D049BB133111EB) & mask
         yield z ^ z >> 31
+
+
+def _of_sides(latency: NDArray[np.float64]) -> list[list[Fraction]]:
+    """Of each tile and side, from (N, 4), or from (N,) for all sides."""
+    columns = latency if latency.ndim == 2 else np.stack([latency] * 4, axis=1)
+    return [[Fraction(int(t), UNITS_PER_STEP) for t in row] for row in units(columns)]
 
 
 class SlowRun:
@@ -86,12 +92,17 @@ class SlowRun:
         ]
         self.sending = [tile for tile in self.tiles if self.on[tile]]
         if setup.clocks:
-            first, period, latency, start = setup.clocks
-            self.update_at = [Fraction(int(t), UNITS_PER_STEP) for t in units(first[begin:end])]
-            self.period = [Fraction(int(t), UNITS_PER_STEP) for t in units(period[begin:end])]
-            self.latency = [Fraction(int(t), UNITS_PER_STEP) for t in units(latency[begin:end])]
-            self.arrive_at: list[Fraction | None] = [None for _ in self.tiles]
-            self.now = Fraction(int(start))
+            clocks = setup.clocks
+            self.update_at = [Fraction(int(t), UNITS_PER_STEP) for t in units(clocks.first[begin:end])]
+            self.period = [Fraction(int(t), UNITS_PER_STEP) for t in units(clocks.period[begin:end])]
+            self.latency = _of_sides(clocks.latency[begin:end])
+            seed_latency = clocks.latency if clocks.seed_latency is None else clocks.seed_latency
+            self.seed_latency = _of_sides(seed_latency[begin:end])
+            line = np.zeros(4) if clocks.line is None else clocks.line
+            self.line = [Fraction(int(t), UNITS_PER_STEP) for t in units(line)]
+            self.on_since = [NEVER for _ in self.tiles]
+            self.arrive_at: list[dict[int, Fraction]] = [{} for _ in self.tiles]  # of each side still to come
+            self.now = Fraction(int(clocks.start))
             # A tile that runs already has told its neighbours its state; another one is switched on later.
             self.boot_at: list[Fraction | None] = [None for _ in self.tiles]
             if not setup.running:
@@ -138,7 +149,8 @@ class SlowRun:
         self._boot(tile)
         if self.setup.clocks:
             self.update_at[tile] = self.now + self.period[tile]
-            self.arrive_at[tile] = self.now + self.latency[tile]
+            self._tell(tile, self.now, self.seed_latency)
+            self.on_since[tile] = self.now
         else:
             self.sending.append(tile)
 
@@ -172,18 +184,28 @@ class SlowRun:
             if boot is not None and boot <= self.now:
                 self.boot_at[tile] = None
                 self._boot(tile)
-                self.arrive_at[tile] = boot + self.latency[tile]
+                self._tell(tile, boot, self.seed_latency)
+                self.on_since[tile] = boot
                 booted.append(tile)
         for tile in self.tiles:
-            arrival = self.arrive_at[tile]
-            if self.on[tile] and arrival is not None and arrival <= self.now and tile not in booted:
-                self.arrive_at[tile] = None
-                self._send(tile)
+            arrived = {side: at for side, at in self.arrive_at[tile].items() if at <= self.now}
+            if self.on[tile] and arrived and tile not in booted:
+                for side in arrived:
+                    del self.arrive_at[tile][side]
+                self._send(tile, [side for side, at in arrived.items() if self._listened(tile, side, at)])
         due = [tile for tile in self.tiles if self.on[tile] and self.update_at[tile] <= self.now]
         for tile in due:
             self._update(tile)
-            self.arrive_at[tile] = self.update_at[tile] + self.latency[tile]
+            self._tell(tile, self.update_at[tile], self.latency)
             self.update_at[tile] += self.period[tile]
+
+    def _tell(self, tile: int, at: Fraction, latency: list[list[Fraction]]) -> None:
+        self.arrive_at[tile] = {side: at + latency[tile][side] for side in range(4)}
+
+    def _listened(self, tile: int, side: int, arrival: Fraction) -> bool:
+        """Whether the neighbour was on all the time that the message was on its line."""
+        other, line = self.neighbours[tile][side], self.line[side]
+        return other is None or line == 0 or self.on_since[other] <= arrival - line
 
     def _listed_step(self) -> None:
         # A tile that is not drawn is not silent: its last message still is its state.
@@ -229,8 +251,10 @@ class SlowRun:
             for side in range(4)
         ]
 
-    def _send(self, tile: int) -> None:
-        for other, lost in zip(self.neighbours[tile], self._lost("held"), strict=True):
+    def _send(self, tile: int, sides: Sequence[int] = range(4)) -> None:
+        for side, (other, lost) in enumerate(zip(self.neighbours[tile], self._lost("held"), strict=True)):
+            if side not in sides:
+                continue
             if other is not None and not lost:
                 self.received[tile, other] = self.own[tile]
                 self.received_at[tile, other] = self.now

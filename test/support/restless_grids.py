@@ -13,8 +13,11 @@ from tilenca.shapes.file import Shape
 from tilenca.simulator.conditions import Conditions, Fault, Rebuilding
 from tilenca.simulator.engine import ExactEngine, FastEngine, States
 from tilenca.simulator.simulator import Simulator
+from tilenca.simulator.tile_times import TileTimes
 
 CHANNELS = 6
+# Sides and seeds of their own, lines that a tile switched on meanwhile does not hear, and some just in time.
+TIMES = TileTimes((0.2, 0.3, 0.4, 0.5, 0.6), (0.5, 0.1, 0.55, 0.2), 0.05)
 
 
 def restless_model() -> Model:
@@ -92,6 +95,8 @@ CONDITIONS = [
     Conditions("clock", loss=0.9, boot=0.0),
     Conditions("clock", loss=0.2, lost="zero", drift=0.08),
     Conditions("clock", loss=1.0, latency=(0.05, 0.98), boot=3.7),
+    Conditions("clock", latency=TIMES, boot=5.0),
+    Conditions("clock", loss=0.3, dead=0.1, latency=TIMES, boot=2.0),
 ]
 
 

@@ -13,7 +13,7 @@ from support.avr import build_target
 from tilenca.base import paths
 from tilenca.model.file import load_model
 from tilenca.shapes.file import Shape
-from tilenca.simulator.rollout_library import DARK, NOBODY, CompiledRollout, Setup
+from tilenca.simulator.rollout_library import DARK, NOBODY, Clocks, CompiledRollout, Setup
 from web.conftest import SOURCES, node
 
 DRAWINGS = ["#.#\n#.#\n###\n..#\n..#", "####\n#..#\n####\n#..#\n####"]
@@ -41,7 +41,7 @@ def native(schedule: str, clocks: dict[str, list[float]], loss: float) -> dict[s
     switched_on = np.floor(min(0.0, float((times[0] - times[1]).min())) * 20) / 20
     setup = Setup(
         starts, neighbours, np.ones(cells, bool), np.repeat([4, 8], sizes), np.array(SEEDS, np.uint64),
-        loss, True, NAMES[schedule], (times[0], times[1], times[2], switched_on) if on_clocks else None,
+        loss, True, NAMES[schedule], Clocks(times[0], times[1], times[2], switched_on) if on_clocks else None,
         False, "stuck", np.where(np.array(FAULTY) < 0, NOBODY, FAULTY + starts[:-1]), 10, 0,
         np.zeros((0, 3), np.int32),
     )  # fmt: skip

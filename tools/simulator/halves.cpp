@@ -57,7 +57,7 @@ void Halves::deliver(Tick& tick) {
     }
     for (int32_t cell : sending_) {
         if (on_[cell]) {
-            tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), now_)});
+            tick.deliveries.push_back({cell, links_.send(cell, kAllSides, random_of(cell), now_)});
         }
     }
 }

@@ -37,18 +37,21 @@ Sides Links::lost(Random& random) const {
     return sides;
 }
 
-Sides Links::send(int cell, Random& random, int now) {
-    Sides sides = loss_ > 0 && !zeros_ ? static_cast<Sides>(~lost(random)) : 0xF;
+Sides Links::send(int cell, Sides sides, Random& random, int now) {
+    const Sides told = sides;
+    if (loss_ > 0 && !zeros_) {
+        sides &= static_cast<Sides>(~lost(random));
+    }
     for (int side = 0; side < kSides; ++side) {
         if (neighbour(cell, side) < 0) {
             sides &= static_cast<Sides>(~(1 << side));
-        } else if (tracks_silence_) {
+        } else if (tracks_silence_ && (told >> side & 1)) {
             int32_t& arrived = arrived_[cell * kSides + side];
             // What is lost takes back what renew() said: the message that arrived is no longer the last one.
             arrived = sides >> side & 1 ? now : arrived - (arrived == now);
         }
     }
-    return sides & 0xF;
+    return sides;
 }
 
 void Links::renew(int cell, int now) {

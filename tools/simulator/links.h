@@ -12,6 +12,7 @@
 namespace tilenca {
 
 using Sides = uint8_t; // bit s: side s
+constexpr Sides kAllSides = 0xF;
 
 class Links {
   public:
@@ -22,8 +23,8 @@ class Links {
     // -1 for none.
     int neighbour(int cell, int side) const { return neighbours_[cell * kSides + side]; }
 
-    // Sends the cell's message; the sides on which it arrives.
-    Sides send(int cell, Random& random, int now);
+    // Sends the cell's message to some sides; those on which it arrives.
+    Sides send(int cell, Sides sides, Random& random, int now);
 
     // The cell would send again what it sent last: sides where its message arrived a unit of time ago are not
     // silent now.

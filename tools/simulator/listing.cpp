@@ -39,7 +39,7 @@ void Listing::plan(Tick& tick) {
         }
     }
     for (int32_t cell : sending_) {
-        tick.deliveries.push_back({cell, links_.send(cell, random_of(cell), step)});
+        tick.deliveries.push_back({cell, links_.send(cell, kAllSides, random_of(cell), step)});
     }
     sending_.clear();
     for (size_t run = 0; run < random_.size(); ++run) {

@@ -13,6 +13,8 @@ using c_api::Refusal;
 
 // Far beyond every run, and sums of two times still fit.
 constexpr int64_t kLongest = int64_t{1} << 46;
+// The ticks before the first step are run, too: more than these are a mistake, and would take for ever.
+constexpr int64_t kEarliest = int64_t{-1000000} * TILENCA_TICKS * TILENCA_UNITS_PER_TICK;
 
 // All arrays must be there, but those that have no elements.
 void check_arrays(const tilenca_setup& setup) {
@@ -57,15 +59,27 @@ void check_run(const tilenca_setup& setup, int run) {
     }
 }
 
+void check_latency(const int64_t* latency, int32_t cell, int side, int64_t period) {
+    check_range<int64_t>("a latency", latency[static_cast<size_t>(cell) * kSides + side], 0, period - 1);
+}
+
 void check_clocks(const tilenca_setup& setup) {
-    check_range<int64_t>("the start", setup.start, -kLongest, 0);
+    check_range<int64_t>("the start", setup.start, kEarliest, 0);
     if (setup.start % TILENCA_UNITS_PER_TICK != 0) {
         throw Refusal("the start is no whole number of ticks");
+    }
+    for (int side = 0; setup.line != nullptr && side < kSides; ++side) {
+        check_range<int64_t>("a time on a line", setup.line[side], 0, kLongest);
     }
     for (int32_t cell = 0; cell < setup.cells; ++cell) {
         check_range<int64_t>("a first update", setup.first[cell], -kLongest, kLongest);
         check_range<int64_t>("a period", setup.period[cell], 1, kLongest);
-        check_range<int64_t>("a latency", setup.latency[cell], 0, setup.period[cell] - 1);
+        for (int side = 0; side < kSides; ++side) {
+            check_latency(setup.latency, cell, side, setup.period[cell]);
+            if (setup.seed_latency != nullptr) {
+                check_latency(setup.seed_latency, cell, side, setup.period[cell]);
+            }
+        }
     }
 }
 

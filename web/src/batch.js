@@ -7,14 +7,15 @@ import { Structure } from "./structures.js";
 export const SETUP = new Structure({
   runs: "i32", cells: "i32", starts: "pointer", neighbours: "pointer", alive: "pointer", target: "pointer",
   seeds: "pointer", loss: "u64", zeros: "u8", schedule: "u8", running: "u8", start: "i64", first: "pointer",
-  period: "pointer", latency: "pointer", fault: "u8", faulty: "pointer", begin: "i64", end: "i64",
-  changes: "pointer", changes_count: "i32",
+  period: "pointer", latency: "pointer", seed_latency: "pointer", line: "pointer", fault: "u8", faulty: "pointer",
+  begin: "i64", end: "i64", changes: "pointer", changes_count: "i32",
 });
 const SCHEDULES = ["halves", "clocks", "listing"];
 const FAULTS = ["none", "dead", "stuck", "away"];
 const TICKS = 20;
 const UNITS_PER_TICK = 65536;
 const UNITS_PER_STEP = TICKS * UNITS_PER_TICK;
+const SIDES = 4;
 const DARK = -1;
 const SEED_STATE = 8192; // 1.0 in units of 2^-13
 
@@ -32,7 +33,7 @@ const SEED_STATE = 8192; // 1.0 in units of 2^-13
  * @typedef {object} Clocks
  * @property {ArrayLike<number>} first when each updates for the first time, from 0
  * @property {ArrayLike<number>} period about 1
- * @property {ArrayLike<number>} latency of messages, below the period
+ * @property {ArrayLike<number>} latency of messages to all sides, below the period
  */
 
 /**
@@ -144,16 +145,22 @@ export class GridBatch {
       start: BigInt(Math.floor(earliest * TICKS) * UNITS_PER_TICK),
       first: this.#times(first),
       period: this.#times(forEach("periods", given.period, this.cells, 1)),
-      latency: this.#times(forEach("latencies", given.latency, this.cells, 0.5)),
+      latency: this.#times(forEach("latencies", given.latency, this.cells, 0.5), SIDES),
+      seed_latency: 0, // as the others
+      line: 0, // of no length
       fault: kind,
       begin: whole("the fault's begin", begin),
       end: whole("the fault's end", end),
     };
   }
 
-  /** @param {Float64Array} steps */
-  #times(steps) {
-    return this.#list(BigInt64Array, Array.from(steps, (step) => BigInt(Math.round(step * UNITS_PER_STEP))));
+  /**
+   * @param {Float64Array} steps
+   * @param {number} [times] how often each is listed
+   */
+  #times(steps, times = 1) {
+    const units = Array.from(steps, (step) => BigInt(Math.round(step * UNITS_PER_STEP)));
+    return this.#list(BigInt64Array, units.flatMap((unit) => Array(times).fill(unit)));
   }
 
   /**

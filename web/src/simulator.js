@@ -4,7 +4,7 @@ import { whole } from "./checks.js";
 import { Module, TilencaError } from "./module.js";
 import { Structure } from "./structures.js";
 
-const ABI_VERSION = 2; // TILENCA_SIMULATOR_ABI_VERSION
+const ABI_VERSION = 3; // TILENCA_SIMULATOR_ABI_VERSION
 const NEIGHBOURHOOD = 5; // the own message, and those of N, E, S, W
 
 const MODEL = new Structure({

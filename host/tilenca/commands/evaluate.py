@@ -30,6 +30,7 @@ from tilenca.emulator.side_by_side import run_side_by_side
 from tilenca.evaluation.evaluator import CONVERGED_BY
 from tilenca.evaluation.suites import make_suite, recorded_aims
 from tilenca.evaluation.validation import validate
+from tilenca.model.cost import firmware_period_ms
 from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
@@ -39,6 +40,7 @@ from tilenca.shapes.sizes import Size, size_name
 from tilenca.simulator.conditions import Conditions, parse_latency
 from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Simulator
+from tilenca.simulator.tile_times import DRIFT, tile_times
 from tilenca.sweep.axes import STEP_S
 from tilenca.sweep.emulated import PLUGS, EmulatedRun, Image, plugged, run_emulated
 from tilenca.views.progress import show_progress
@@ -56,6 +58,7 @@ FIXED_BY_SUITE = {
     "boot_spread": None,
     "latency": None,
 }
+AS_TILES = "tiles"  # a latency
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
 
 
@@ -110,7 +113,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--latency",
         metavar="L",
-        help="fast: what a message takes, in periods, such as 0.5, or each tile's between 0.1-0.9 (0.1-0.9)",
+        help="fast: what a message takes, in periods, such as 0.5, or each tile's between 0.1-0.9 (0.1-0.9); "
+        f"{AS_TILES}: what it takes on tiles, by its side",
     )
     parser.add_argument(
         "--seed", type=seed, default=1, metavar="N", help="same seed, same numbers (default 1)"
@@ -136,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
     elif args.plug is not None:
         raise UsageError("--plug is for emulated tiles; add --engine emulator")
     else:
-        conditions = _conditions(args)
+        conditions = _conditions(args, model)
         random = np.random.default_rng(args.seed)
         simulator = Simulator(_engine(args.engine, model), drawings, chosen, conditions, random)
         trajectory = simulator.run(args.steps)
@@ -174,13 +178,16 @@ def _run_suite(args: argparse.Namespace, model: Model) -> int:
     return 0
 
 
-def _conditions(args: argparse.Namespace) -> Conditions:
+def _conditions(args: argparse.Namespace, model: Model) -> Conditions:
     """Of simulated runs."""
     usual = Conditions(args.schedule, loss=args.loss, lost=args.lost, dead=args.dead)
     if args.boot_spread is not None:
         usual = replace(usual, boot=args.boot_spread / STEP_S)
     if args.latency is None:
         return usual
+    if args.latency == AS_TILES:
+        times = tile_times(model.dimensions, firmware_period_ms())
+        return replace(usual, latency=times, drift=DRIFT)
     try:
         return replace(usual, latency=parse_latency(args.latency))
     except ValueError as error:

@@ -16,7 +16,7 @@ from typing import Any
 from tilenca.base import paths
 from tilenca.base.errors import BuildError, UsageError
 from tilenca.model import packing
-from tilenca.model.file import MAX_WIDTH, Dimensions
+from tilenca.model.file import MAX_WIDTH, NEIGHBOURHOOD, Dimensions
 from tilenca.protocol.constants import CRC_SIZE, HEADER_SIZE, LINK_BAUD, MAX_CHANNELS, MIN_PERIOD_MS
 
 # LPM reaches the low 64 KiB of flash; the vectors and other constants want their part of it.
@@ -177,6 +177,18 @@ def update_cycles(size: Dimensions, active: Sequence[float] = ACTIVE) -> float:
         + CYCLES_PER_CHANNEL * size.channels
         + CYCLES_PER_UPDATE
     )
+
+
+def computing_ms(size: Dimensions, neighbours: int) -> float:
+    """Milliseconds that an update takes on average, while the chip does its other work, too.
+
+    Args:
+        size: of the network.
+        neighbours: how many the tile has; the messages of absent ones are zeros, which are skipped.
+    """
+    multiplied, skipped = weights_read(size, ((1 + neighbours) / NEIGHBOURHOOD, *ACTIVE[1:]))
+    cycles = CYCLES_PER_MAC * multiplied + CYCLES_PER_SKIPPED * skipped
+    return cycles / (CLOCK_PER_MS - CYCLES_PER_MS)
 
 
 def shortest_period_ms(size: Dimensions) -> int:

@@ -95,10 +95,9 @@ def _figure(title: str, first: Experiment, rows: Sequence[Row]) -> Figure:
 def apart_of(rows: Mapping[str, Sequence[Row]]) -> tuple[float, int] | None:
     """By how many points simulator and emulated tiles differ at most, update by update, and after which.
 
-    In the simulator all messages are as slow as those of a tile to the north and south. None: a report
-    without these.
+    The simulator has the times of the tiles. None: a report without these.
     """
-    keys = [f"gap.{engine}.{CONVERGED}" for engine in ("slow", "tiles")]
+    keys = [f"gap.{engine}.{CONVERGED}" for engine in ("timed", "tiles")]
     if not all(key in rows for key in keys):
         return None
     both = ([row for row in rows[key] if row.across is not None] for key in keys)

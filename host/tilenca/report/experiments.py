@@ -38,11 +38,10 @@ GAPS: tuple[tuple[str, str, Words, tuple[int, int]], ...] = (
     ("60.3x3", "three by three after 60 updates", ("--shapes", "digits-3x3", "--steps", "60"), (20, 0)),
     ("60.7x6", "ten digits at 7x6 after 60 updates", ("--size", "7x6", "--steps", "60"), (10, 0)),
 )
-LIKE_TILES = ("--boot-spread", "1", "--latency")  # emulated tiles are switched on within a second
+LIKE_TILES = ("--boot-spread", "1", "--latency", "tiles")  # emulated tiles are switched on within a second
 LINES_OF_GAP: tuple[tuple[str, str, Words], ...] = (
     ("fast", "simulator, usual times", ()),
-    ("slow", "simulator, all messages as north and south", (*LIKE_TILES, "0.77")),
-    ("quick", "simulator, all messages as east and west", (*LIKE_TILES, "0.49")),
+    ("timed", "simulator, the tiles' own times", LIKE_TILES),
     ("tiles", "emulated tiles", ("--engine", "emulator")),
 )
 BY_UPDATE = "Share of the runs in which all tiles are right, update by update"

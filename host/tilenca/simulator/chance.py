@@ -1,11 +1,14 @@
 """Draws everything that chance decides about runs, before they begin."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.shapes.batch import Batch
 from tilenca.simulator.conditions import Conditions, Fault, Rebuilding, Switches
-from tilenca.simulator.rollout_library import NOBODY, Setup
+from tilenca.simulator.rollout_library import NOBODY, Clocks, Setup
+from tilenca.simulator.tile_times import TileTimes
 
 NO_SWITCHES: Switches = np.zeros((0, 3), np.int32)
 
@@ -55,18 +58,20 @@ def _draw_alive(batch: Batch, dead: float, random: np.random.Generator) -> NDArr
     return alive
 
 
-def _draw_clocks(
-    batch: Batch, conditions: Conditions, random: np.random.Generator, running: bool
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
-    """First update, period and latency of every cell, and when the first one is switched on, in steps."""
-    cells = len(batch.sample)
+def _draw_clocks(batch: Batch, conditions: Conditions, random: np.random.Generator, running: bool) -> Clocks:
+    """The clocks of every cell."""
+    cells, times = len(batch.sample), conditions.latency
     period = 1 + random.uniform(-conditions.drift, conditions.drift, cells)
-    latency = random.uniform(*conditions.latency, cells)
+    if isinstance(times, TileTimes):
+        clocks = times.clocks(period, (batch.neighbours < cells).sum(axis=1))
+        ends = times.ends
+    else:
+        clocks, ends = Clocks(period, period, random.uniform(*times, cells), 0.0), 0.0
     if running:
-        return period * random.random(cells), period, latency, 0.0
+        return replace(clocks, first=period * random.random(cells))
     boot = random.uniform(0, conditions.boot, cells)
     boot -= np.maximum.reduceat(boot, batch.starts)[batch.sample]
-    return boot + period, period, latency, -np.ceil(conditions.boot)
+    return replace(clocks, first=boot + period - ends, start=-np.ceil(conditions.boot + ends))
 
 
 def _faulty(batch: Batch, fault: Fault | None) -> NDArray[np.int64]:

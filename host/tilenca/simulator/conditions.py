@@ -7,10 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.simulator.rollout_library import SCHEDULES
+from tilenca.simulator.tile_times import TileTimes
 
 ScheduleKind = Literal["random", "clock", "listing"]
 FaultKind = Literal["dead", "stuck", "away"]
 Switches = NDArray[np.int32]
+USUAL_LATENCY = (0.1, 0.9)
 MOST_LATENCY = 0.98  # a message arrives before its sender sends the next, with a period 1 % off
 
 
@@ -61,7 +63,8 @@ class Conditions:
             `SILENT_PERIODS` steps (as tiles do), or "zero".
         dead: share of tiles that are silent and dark from the start; they are not counted.
         drift: largest relative difference of a tile's period from the nominal one.
-        latency: least and most time a tile's message takes, less than the shortest period.
+        latency: least and most time a tile's message takes, less than the shortest period; or the times
+            that tiles have, side by side, see `tilenca.simulator.tile_times`.
         boot: tiles are switched on within this time of each other; step 0 is when the last one is. With less
             than a period all tiles' phases are that close together.
         fault: of one tile of each run; None: none.
@@ -75,7 +78,7 @@ class Conditions:
     lost: Literal["held", "zero"] = "held"
     dead: float = 0.0
     drift: float = 0.01
-    latency: tuple[float, float] = (0.1, 0.9)
+    latency: tuple[float, float] | TileTimes = USUAL_LATENCY
     boot: float = 10.0
     fault: Fault | None = None
 
@@ -84,7 +87,8 @@ class Conditions:
             raise ValueError(f"no such schedule or loss: {self.schedule!r}, {self.lost!r}")
         if not (0 <= self.loss <= 1 and 0 <= self.dead <= 1):
             raise ValueError(f"loss {self.loss} and dead {self.dead} must be shares, 0..1")
-        in_time = 0 < self.latency[0] <= self.latency[1] < 1 - self.drift
+        drawn = (0.1, 0.1) if isinstance(self.latency, TileTimes) else self.latency
+        in_time = 0 < drawn[0] <= drawn[1] < 1 - self.drift
         if not (in_time and self.drift >= 0 and 0 <= self.boot < float("inf")):
             raise ValueError(
                 f"drift {self.drift}, boot {self.boot}, latency {self.latency}: none is negative, and a "

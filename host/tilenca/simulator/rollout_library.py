@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.base.sides import SIDES
 from tilenca.model.file import Model
 from tilenca.simulator.core_library import library, model_struct, pointer
 
@@ -25,8 +26,32 @@ Cells = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
+class Clocks:
+    """The clocks of N tiles, in steps.
+
+    Attributes:
+        first: (N,) when each updates for the first time. It is switched on one period before that.
+        period: (N,) from update to update.
+        latency: (N, 4) by the side that a message leaves from, or (N,) for all sides: from the moment at
+            which an update reads the neighbours' messages to that at which a neighbour can read its result.
+        start: when the first tile is switched on, from -1,000,000 to 0, a whole number of ticks.
+        seed_latency: as `latency`, of the seed state, from the moment at which the tile is switched on;
+            None: as `latency`.
+        line: (4,) by the same side, how long a message is on its line before it arrives: a tile that is
+            switched on meanwhile does not hear it. None: no time.
+    """
+
+    first: NDArray[np.float64]
+    period: NDArray[np.float64]
+    latency: NDArray[np.float64]
+    start: float
+    seed_latency: NDArray[np.float64] | None = None
+    line: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True)
 class Setup:
-    """R runs of N cells in all, and their conditions; times on clocks are in units of a step.
+    """R runs of N cells in all, and their conditions.
 
     Attributes:
         starts: (R + 1,) the first cell of each run, and N.
@@ -37,8 +62,7 @@ class Setup:
         loss: share of messages lost.
         zeros: whether a lost message reads as zeros; else the last one is held.
         schedule: one of `SCHEDULES`, see `tilenca.simulator.simulator.Conditions`.
-        clocks: `(first update, period, latency)`, (N,) each, and when the first tile is switched on; None
-            for a schedule without clocks. A tile is switched on one period before its first update.
+        clocks: of the schedule "clock"; None for the others.
         running: whether all tiles run already, and their neighbours have their messages.
         fault: one of `FAULTS`.
         faulty: (R,) the cell with the fault, `NOBODY` for none.
@@ -55,7 +79,7 @@ class Setup:
     loss: float
     zeros: bool
     schedule: str
-    clocks: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float] | None
+    clocks: Clocks | None
     running: bool
     fault: str
     faulty: NDArray[Any]
@@ -70,21 +94,32 @@ def units(steps: NDArray[np.float64] | float) -> NDArray[np.int64]:
     return counted
 
 
+def each_side(latency: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(N, 4) latencies of N tiles in the units of the schedule, from one of each side or one of each tile."""
+    columns = latency if latency.ndim == 2 else latency[:, None]
+    return np.ascontiguousarray(np.broadcast_to(units(columns), (len(latency), len(SIDES))))
+
+
 def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
     """The setup as `tilenca_setup`, and what must live as long as that."""
-    first, period, latency, start = setup.clocks or (np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
+    none = np.zeros(0)
+    clocks = setup.clocks or Clocks(none, none, none, 0.0)
     arrays = {
         "starts": pointer(setup.starts.astype(np.int32), "int32_t"),
         "neighbours": pointer(np.ascontiguousarray(setup.neighbours, np.int32), "int32_t"),
         "alive": pointer(setup.alive.astype(np.uint8), "uint8_t"),
         "target": pointer(setup.target.astype(np.int8), "int8_t"),
         "seeds": pointer(np.ascontiguousarray(setup.seeds, np.uint64), "uint64_t"),
-        "first": pointer(units(first), "int64_t"),
-        "period": pointer(units(period), "int64_t"),
-        "latency": pointer(units(latency), "int64_t"),
+        "first": pointer(units(clocks.first), "int64_t"),
+        "period": pointer(units(clocks.period), "int64_t"),
+        "latency": pointer(each_side(clocks.latency), "int64_t"),
         "faulty": pointer(setup.faulty.astype(np.int32), "int32_t"),
         "changes": pointer(np.ascontiguousarray(setup.changes, np.int32), "tilenca_change"),
     }
+    if clocks.seed_latency is not None:
+        arrays["seed_latency"] = pointer(each_side(clocks.seed_latency), "int64_t")
+    if clocks.line is not None:
+        arrays["line"] = pointer(units(clocks.line), "int64_t")
     numbers = {
         "runs": len(setup.seeds),
         "cells": len(setup.alive),
@@ -92,7 +127,7 @@ def _setup_struct(setup: Setup) -> tuple[Any, list[Any]]:
         "zeros": setup.zeros,
         "schedule": SCHEDULES.index(setup.schedule),
         "running": setup.running,
-        "start": int(units(start)),
+        "start": int(units(clocks.start)),
         "fault": FAULTS.index(setup.fault),
         "begin": setup.begin,
         "end": setup.end,

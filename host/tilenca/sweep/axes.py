@@ -15,7 +15,7 @@ from itertools import product
 from tilenca.base.errors import UsageError
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.shapes.sizes import parse_size
-from tilenca.simulator.conditions import Conditions, parse_latency
+from tilenca.simulator.conditions import USUAL_LATENCY, Conditions, parse_latency
 from tilenca.simulator.rollout_library import SCHEDULES
 
 FAST, EMULATOR = "fast", "emulator"
@@ -25,7 +25,7 @@ MAX_VALUES = 1000  # of one axis
 MAX_CELLS = 100_000
 AS_DRAWN = "drawn"  # a size
 KINDS = ("drawn", "damaged", "varied", "unknown")  # of drawings
-LATENCY = "-".join(map(str, Conditions.latency))
+LATENCY = "-".join(map(str, USUAL_LATENCY))
 STEP_S = DEFAULT_PERIOD_MS / 1000  # at the pace of real tiles
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 

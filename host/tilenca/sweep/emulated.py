@@ -9,6 +9,7 @@ from pathlib import Path
 from tilenca.base.errors import BuildError
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.fault_spec import parse as parse_fault
+from tilenca.emulator.voice import TELLING_MS
 from tilenca.model.file import Model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
@@ -92,11 +93,24 @@ def run_emulated(
         known = len(answers) == 1 and answers <= set(labels)
         return EmulatedRun(
             emulation.share_right(),
-            math.inf if after_s is None else 1 + math.ceil(after_s / period_s),
+            math.inf if after_s is None else step_of(after_s, period_s),
             math.inf if agreed_s is None else agreed_s,
             labels.index(answers.pop()) if known else MIXED,
             emulation.updates_done(),
         )
+
+
+def step_of(after_s: float, period_s: float) -> int:
+    """The step, from 1, that ends with an update of the last tile, as in the simulator.
+
+    Args:
+        after_s: since the last tile has told of its first update.
+        period_s: of an update.
+
+    A tile computes longer when it knows more of the others, so a later update of the same tile may show up
+    to 3 ms later in its period than the first one did.
+    """
+    return 1 + math.ceil(max(0.0, after_s - TELLING_MS / 1000) / period_s)
 
 
 def plugged(

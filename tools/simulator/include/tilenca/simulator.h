@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 // Grows with every change after which callers must be compiled or written anew.
-enum { TILENCA_SIMULATOR_ABI_VERSION = 2 };
+enum { TILENCA_SIMULATOR_ABI_VERSION = 3 };
 
 // The integer weights of a network 5 C -> H1 -> H2 -> C (docs/PROTOCOL.md section 4), [output][input].
 typedef struct tilenca_model {
@@ -39,7 +39,7 @@ typedef struct tilenca_model {
 enum { TILENCA_FAULT_NONE, TILENCA_FAULT_DEAD, TILENCA_FAULT_STUCK, TILENCA_FAULT_AWAY };
 
 // Which cells update when, and when their messages arrive. Halves: twice a step a random half of the cells
-// updates, and its messages arrive at once. Clocks: every tile has its own phase, period and latency, as
+// updates, and its messages arrive at once. Clocks: every tile has its own phase, period and latencies, as
 // docs/PROTOCOL.md says. Listing: as in the paper's listing, in each step of a run of n cells one cell after
 // another is drawn, n times, with replacement; it updates, and its neighbours have its message at once.
 enum { TILENCA_SCHEDULE_HALVES, TILENCA_SCHEDULE_CLOCKS, TILENCA_SCHEDULE_LISTING };
@@ -70,16 +70,21 @@ typedef struct tilenca_setup {
     uint8_t schedule;          // TILENCA_SCHEDULE_...
     // On clocks, in units; other schedules read none of these.
     uint8_t running; // all tiles run already, and their neighbours have their messages
-    int64_t start;   // when the first tile is switched on, a whole number of ticks, not above 0
+    // When the first tile is switched on: a whole number of ticks, a million steps before 0 to 0.
+    int64_t start;
     // [cells], when each updates for the first time. Unless all are running, it is switched on one period
     // before that, and sends its seed state then.
     const int64_t* first;
-    const int64_t* period;         // [cells], above 0
-    const int64_t* latency;        // [cells], from 0, below the cell's period
-    uint8_t fault;                 // TILENCA_FAULT_...
-    const int32_t* faulty;         // [runs], a cell of the run, or -1 for none; not read without a fault
-    int64_t begin;                 // the first step of the fault; 0: it is there before all others start
-    int64_t end;                   // the step at which a tile that was away is back, in the seed state
+    const int64_t* period;       // [cells], above 0
+    const int64_t* latency;      // [cells][4], of messages by the side that they leave from, from 0, below
+                                 // the cell's period
+    const int64_t* seed_latency; // the same of the seed state, which no update precedes; null: as `latency`
+    const int64_t* line;   // [4], by the same side: how long a message is on its line before it arrives.
+                           // A tile that is switched on meanwhile does not hear it. Null: no time
+    uint8_t fault;         // TILENCA_FAULT_...
+    const int32_t* faulty; // [runs], a cell of the run, or -1 for none; not read without a fault
+    int64_t begin;         // the first step of the fault; 0: it is there before all others start
+    int64_t end;           // the step at which a tile that was away is back, in the seed state
     const tilenca_change* changes; // [changes_count], in the order of their steps
     int32_t changes_count;
 } tilenca_setup;
