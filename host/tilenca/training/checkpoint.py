@@ -142,7 +142,7 @@ def _load(path: Path, device: torch.device) -> State:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             if (name := archive.testzip()) is not None:  # torch reads past a wrong checksum
                 raise ValueError(f"wrong checksum of {name}")
-        state: object = torch.load(io.BytesIO(data), map_location=device, weights_only=True)
+        state: Any = torch.load(io.BytesIO(data), map_location=device, weights_only=True)
     except torch.cuda.OutOfMemoryError as error:
         raise TilencaError(f"{path}: no room for it on {device}; give another --device") from error
     except Exception as error:  # any exception of torch's unpickler
