@@ -2,18 +2,18 @@
 
 /** @import { Listener, Source, StreamEvent } from "./source.js" */
 import { parseRecording } from "./recording_file.js";
+import { subjectOf } from "./sentences.js";
 
 const FULL_SPEED = 20; // where one asks for as fast as it can
 const TAKES = ["open", "pace", "step", "seek", "rest"];
 
 /** What an event is about, where the latest one counts; "" for those that pass. @param {StreamEvent} event @param {number} place */
-function subjectOf(event, place) {
+function keyOf(event, place) {
   if (event.note !== undefined) return `note ${place}`;
   const kind = ["place", "open", "display", "cable", "fault", "health", "classes"].find((one) => one in event);
   if (kind) return `${kind} ${event.port} ${event.side ?? ""}`;
   if (event.raw === undefined) return "";
-  const [name, , , side] = event.raw.split(",");
-  return `raw ${event.port} ${name === "$LINK" ? `${name} ${side}` : name}`;
+  return `raw ${event.port} ${subjectOf(event.raw)}`;
 }
 
 /**
@@ -78,7 +78,7 @@ export function openRecording(recorded, listener) {
     /** @type {Map<string, StreamEvent>} */
     const last = new Map();
     for (place = 0; place < events.length && events[place].time <= wanted; place++) {
-      const subject = subjectOf(events[place], place);
+      const subject = keyOf(events[place], place);
       last.delete(subject); // so that it comes where the latest one does
       if (subject) last.set(subject, events[place]);
     }

@@ -97,14 +97,31 @@ export function framed(text) {
   return `$${text}*${checksum(text).toString(16).toUpperCase().padStart(2, "0")}\r\n`;
 }
 
+/** Name and fields of a line with the right checksum and a known name; null of any other. @param {string} raw */
+function parts(raw) {
+  const found = FRAMED.exec(raw.trim());
+  if (!found || checksum(found[1]) !== parseInt(found[2], 16)) return null;
+  const [name, ...fields] = found[1].split(",");
+  return Object.hasOwn(PARSERS, name) ? { name, fields } : null;
+}
+
+/**
+ * What a line is about, where the latest one counts: the name of its sentence, and the side of a `LINK`; "" for
+ * all lines that are none. Its twins are subject_of of host/tilenca/page/outbox.py and web/src/stream/subject.js.
+ * @param {string} raw
+ */
+export function subjectOf(raw) {
+  const found = parts(raw);
+  if (found === null) return "";
+  return found.name === "LINK" ? `LINK ${found.fields[2]}` : found.name;
+}
+
 /**
  * The sentence in a line; null for noise, damage, another version, or an unknown name.
  * @param {string} raw
  * @returns {Sentence | null}
  */
 export function parseSentence(raw) {
-  const found = FRAMED.exec(raw.trim());
-  if (!found || checksum(found[1]) !== parseInt(found[2], 16)) return null;
-  const [name, ...fields] = found[1].split(",");
-  return Object.hasOwn(PARSERS, name) ? PARSERS[name](fields) : null;
+  const found = parts(raw);
+  return found && PARSERS[found.name](found.fields);
 }

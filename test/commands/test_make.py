@@ -26,6 +26,7 @@ from tilenca.commands.emulate_runs import EmulationResult
 from tilenca.commands.make import STEPS
 from tilenca.commands.train_plan import make_plan
 from tilenca.emulator.greeting import greeting
+from tilenca.evaluation.metrics_file import METRICS_FILE
 from tilenca.model import cost
 from tilenca.model.file import load_model
 from tilenca.views.progress import Tell
@@ -156,6 +157,28 @@ def test_a_model_of_odd_metadata_is_another_one(
 ) -> None:
     args = asked(two_shapes, _changed(trained_model, tmp_path / "odd", **odd))
     with pytest.raises(UsageError, match="holds a model of another file"):
+        make._is_trained(args, make_plan(args))
+
+
+@pytest.mark.parametrize(
+    ("metrics", "why"),
+    [
+        (None, "a model without its measurements; --force trains it again"),
+        ("{}", "a model without its measurements"),
+        ('{"rows": [{"key": "drawings"}], "targets_held": ""}', r"metrics\.json: not the metrics of a model"),
+        ("{", r"metrics\.json: cannot be read"),
+    ],
+    ids=str,
+)
+def test_damaged_measurements_are_told_before_anything_is_built(
+    metrics: str | None, why: str, two_shapes: Path, trained_model: Path, tmp_path: Path
+) -> None:
+    out = _changed(trained_model, tmp_path / "odd")
+    (out / METRICS_FILE).unlink()
+    if metrics is not None:
+        (out / METRICS_FILE).write_text(metrics)
+    args = asked(two_shapes, out)
+    with pytest.raises(UsageError, match=why):
         make._is_trained(args, make_plan(args))
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
@@ -45,6 +47,36 @@ def test_every_shipped_model_knows_its_files_and_its_id(
     assert found is not None
     assert found[0].model_id == model.model_id
     assert capsys.readouterr().err == ""
+
+
+json_values = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text()
+    | st.just("a" * 300)
+    | st.just("digits.toml"),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["file", "sha256"]) | st.text(max_size=3), inner, max_size=3)
+    ),
+    max_leaves=9,
+)
+
+
+@given(st.dictionaries(st.sampled_from(["shapes", "sources"]), json_values))
+@example({"shapes": ["a" * 300]})
+@example({"shapes": ["a\0b"]})
+def test_metadata_of_any_form_name_files_or_are_refused_in_one_line(metadata: dict[str, Any]) -> None:
+    model, folder, said = made_of(metadata), paths.DEFAULT_MODEL, ""
+    try:
+        assert all(path.is_file() for path in own_shapes(model, folder))
+    except UsageError as error:
+        said = str(error)
+    assert said == "" or said.startswith(f"{folder}: was trained on ")
+    assert "\n" not in said
+    assert why_wrong(model, load_task(paths.DEFAULT_SHAPES)).count("\n") == 0
 
 
 def test_files_that_are_given_come_first() -> None:

@@ -224,13 +224,21 @@ def test_a_shape_can_be_rebuilt_into_another(tmp_path: Path, capsys: pytest.Capt
         assert getattr(image, "n_frames", 0) == report["pictures"] == report["steps"] + 1
 
 
-def test_the_targets_that_a_model_holds_are_in_its_picture(tmp_path: Path) -> None:
+def test_the_targets_that_a_model_holds_are_in_its_picture(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert plot("digits-drawn", "--out", tmp_path, "--format", "svg") == 0
     with_targets = (tmp_path / "history.svg").read_bytes()
     shutil.copytree(paths.MODELS / "digits-drawn", tmp_path / "model")
     (tmp_path / "model" / "metrics.json").write_text("{}", encoding="utf-8")
     assert plot(tmp_path / "model", "--out", tmp_path, "--format", "svg") == 0
-    assert (tmp_path / "history.svg").read_bytes() != with_targets
+    without = (tmp_path / "history.svg").read_bytes()
+    assert without != with_targets
+    assert capsys.readouterr().err == ""
+    (tmp_path / "model" / "metrics.json").write_text('{"rows": 3}', encoding="utf-8")
+    assert plot(tmp_path / "model", "--out", tmp_path, "--format", "svg") == 0
+    assert (tmp_path / "history.svg").read_bytes() == without
+    assert capsys.readouterr().err.startswith(f"note: {tmp_path}/model/metrics.json: not the metrics")
 
 
 def test_a_recording_of_tiles_can_be_filmed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,6 +70,25 @@ def test_after_an_interrupt_the_caller_says_how_to_go_on(two_shapes: Path, tmp_p
     assert (tmp_path / "checkpoint-1.pt").exists()
 
 
+def test_a_seed_that_cannot_go_on_is_not_lost(
+    two_shapes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    damaged, other = tmp_path / "checkpoint-2.pt", tmp_path / "checkpoint-9.pt"
+    damaged.write_bytes(b"half of it")
+    other.write_bytes(b"of a seed that is not asked for")
+    words = ("--iterations", "4", "--jobs", "1", "--resume")
+    args = arguments(two_shapes, tmp_path, *words, "--seeds", "2")
+    assert train_model(args, make_plan(args), TrainingViews(), "").folder == tmp_path
+    said = capsys.readouterr().err
+    assert f"seed 2: {damaged}: damaged checkpoint" in said
+    assert f"note: {tmp_path}: the checkpoints of all seeds stay; --resume goes on with them" in said
+    assert damaged.read_bytes() == b"half of it"
+    assert (tmp_path / "checkpoint-1.pt").exists()
+    args = arguments(two_shapes, tmp_path, *words)
+    train_model(args, make_plan(args), TrainingViews(), "")
+    assert {path.name for path in tmp_path.glob("*.pt")} == {damaged.name, other.name}
+
+
 def test_seeds_share_the_processors_and_a_worker_has_one(two_shapes: Path, tmp_path: Path) -> None:
     args = arguments(two_shapes, tmp_path, "--seeds", "2", "--jobs", "2")
     plan = make_plan(args)

@@ -4,8 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from support.emulate import emulate, report
+from support.refusal import read_or_refused
+from support.strategies import damaged
 from tilenca.base.errors import UsageError
 from tilenca.base.paths import FIRMWARE_ELF
 from tilenca.emulator import Array, EmulatedTile
@@ -44,6 +48,23 @@ def test_a_file_of_another_length_is_refused_and_changes_nothing(
     with pytest.raises(UsageError, match=rf"tile-01\.eeprom: {size} bytes, .* delete it to begin anew"):
         load_eeprom(tile, tmp_path)
     assert set(tile.read_eeprom()) == {0xFF}
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    damaged(bytes(range(256)) * (EEPROM_BYTES // 256))
+    | st.binary(min_size=EEPROM_BYTES, max_size=EEPROM_BYTES)
+)
+def test_any_bytes_are_the_eeprom_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, tile: EmulatedTile, content: bytes
+) -> None:
+    """What the firmware makes of them is another matter: it has checksums of its own."""
+    path, before = tmp_path_factory.mktemp("fuzz") / "tile-01.eeprom", tile.read_eeprom()
+    loaded = read_or_refused(path, content, lambda path: load_eeprom(tile, path.parent))
+    assert tile.read_eeprom() == (content if loaded else before)
+    save_eeprom(tile, path.parent)
+    assert path.read_bytes() == tile.read_eeprom()
+    assert [path.name for path in path.parent.iterdir()] == ["tile-01.eeprom"]
 
 
 def test_a_place_that_is_no_folder_is_told_with_the_remedy(tile: EmulatedTile, tmp_path: Path) -> None:

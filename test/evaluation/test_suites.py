@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tilenca.base import paths
+from tilenca.base.errors import UsageError
 from tilenca.evaluation.suites import MOST_DRAWN, Aims, Suite, make_suite, recorded_aims
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_training_task
@@ -106,6 +107,15 @@ def test_a_model_records_the_aims_of_its_recipe(name: str) -> None:
     size = replace(model.dimensions, directions=4 if recipe.directions else 0)
     model = replace(model, dimensions=size, metadata={"recipe": asdict(recipe)})
     assert recorded_aims(model) == aims_of(recipe)
+
+
+@pytest.mark.parametrize("value", [None, "1", [], -1, 1e9, 10**400, float("nan"), float("inf")], ids=repr)
+@pytest.mark.parametrize("name", ["stretch", "unknown"])
+def test_aims_that_are_none_are_refused(name: str, value: object) -> None:
+    """One of them has more digits than a float can hold."""
+    model = replace(load_model(paths.DEFAULT_MODEL), metadata={"recipe": {name: value}})
+    with pytest.raises(UsageError, match=r"metadata\.recipe has no numbers in it; train it again"):
+        recorded_aims(model)
 
 
 def test_of_a_file_with_very_many_drawings_some_are_asked_by_the_seed(tmp_path: Path) -> None:

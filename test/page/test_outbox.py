@@ -1,9 +1,15 @@
 """The outbox: one that reads gets all, one that is slow the latest and all changes, and nothing grows."""
 
+import shutil
+from pathlib import Path
+
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tilenca.page.outbox import MOST_CHANGES, MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox
+from support.page_node import PageNode
+from support.vectors import cases
+from tilenca.base import paths
+from tilenca.page.outbox import MOST_CHANGES, MOST_FRAMES, MOST_REFUSALS, MOST_UNSEEN, Outbox, subject_of
 from tilenca.protocol import stream
 from tilenca.protocol.sentences import HelloSentence, TileSentence, framed, parse_sentence
 
@@ -174,3 +180,30 @@ def test_changes_of_labels_have_an_end_and_what_a_tile_shows_has_not() -> None:
     _, events = outbox.take()
     assert events[:2] == first
     assert events[2:] == [shows("tile-02", "38"[n % 2], n) for n in range(MOST_CHANGES - 1, 2 * MOST_CHANGES)]
+
+
+SUBJECTS = """
+import { subjectOf } from "./stream/sentences.js";
+import { subjectOf as subjectInTheWorker } from "./subject.js";
+const answer = (line) => [subjectOf(line), subjectInTheWorker(line)];
+"""
+
+
+def test_a_line_is_about_the_same_here_on_the_page_and_in_its_emulator(tmp_path: Path) -> None:
+    """The page and the emulator for browsers are served apart: neither can use the other's modules."""
+    shutil.copy(paths.ROOT / "web" / "src" / "stream" / "subject.js", tmp_path)
+    whole = [case[1] for case in cases("sentences.inc")]
+    damaged = [line.replace("*", "0*") for line in whole] + [line[1:] for line in whole]
+    noise = ["", "$", "$*00", "noise", "$LINK,1,2,N", framed("FLY,1").decode().strip(), "$TILE,1*00"]
+    with PageNode(tmp_path, SUBJECTS) as node:
+        for line in [*whole, *damaged, *noise]:
+            subject = " ".join(filter(None, subject_of(line)))
+            assert node.ask(line) == [subject, subject], line
+    assert {subject_of(line) for line in damaged + noise} == {("", "")}
+    assert {" ".join(subject_of(line)).split()[0] for line in whole} >= {
+        "HELLO",
+        "TILE",
+        "LINK",
+        "CHIP",
+        "BOARD",
+    }

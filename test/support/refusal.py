@@ -1,11 +1,15 @@
-"""How a model is refused."""
+"""How what is damaged is refused: in one line that says where."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
 from tilenca.base.errors import UsageError
 from tilenca.model.file import load_model
+
+T = TypeVar("T")
 
 
 def refusal(model: Path) -> str:
@@ -14,3 +18,26 @@ def refusal(model: Path) -> str:
     message = str(caught.value)
     assert "\n" not in message
     return message
+
+
+def read_or_refused(
+    path: Path, content: bytes, read: Callable[[Path], T], within: Path | None = None
+) -> T | None:
+    """What a reader makes of a file of any bytes; None: it refused them. The file stays as it is.
+
+    Args:
+        path: the file, which is written here.
+        content: its bytes.
+        read: may raise a `UsageError` of one line that begins with the file, and nothing else.
+        within: the folder that a message may begin with instead.
+    """
+    path.write_bytes(content)
+    found = None
+    try:
+        found = read(path)
+    except UsageError as error:
+        message = str(error)
+        assert message.startswith(str(within or path))
+        assert "\n" not in message
+    assert path.read_bytes() == content
+    return found

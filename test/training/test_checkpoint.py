@@ -1,19 +1,26 @@
 """A checkpoint is whole or not at all, and of this run or refused."""
 
+import io
 import resource
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
+from support.refusal import read_or_refused
+from support.strategies import damaged
 from support.training import SMOKE, job_of, trainer
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.training.checkpoint import glance
 from tilenca.training.runner import make_trainer
+from tilenca.training.trainer import Trainer, trained_at
 
 
 def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> None:
@@ -23,12 +30,123 @@ def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> Non
         trainer(seed=2).load(path)
 
 
-def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "checkpoint.pt"
-    trainer().save(path)
-    path.write_bytes(path.read_bytes()[:5000])
-    with pytest.raises(UsageError, match="damaged checkpoint"):
+class Run:
+    """A training with a measured result, and its checkpoint; Hypothesis does not print the bytes."""
+
+    def __init__(self, learner: Trainer, whole: bytes) -> None:
+        self.learner, self.whole = learner, whole
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    path, learner = tmp_path_factory.mktemp("whole") / "checkpoint.pt", trainer()
+    learner.step()
+    learner.measured(0.5, {"right": 0.5})
+    learner.save(path)
+    return Run(learner, path.read_bytes())
+
+
+def state_of(data: bytes) -> Any:
+    return torch.load(io.BytesIO(data), weights_only=True)
+
+
+def readings(path: Path, content: bytes, learner: Trainer) -> list[int | None]:
+    """The iteration that each reader of a checkpoint finds in these bytes; None where it refuses them."""
+
+    def loaded(path: Path) -> int:
+        learner.load(path)
+        return learner.iteration
+
+    readers: list[Callable[[Path], int]] = [
+        loaded,
+        lambda path: trained_at(path, learner.config).iteration,
+        lambda path: int(glance(path)["iteration"]),
+    ]
+    return [read_or_refused(path, content, read) for read in readers]
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_any_bytes_are_the_checkpoint_or_refused_in_one_line(
+    tmp_path_factory: pytest.TempPathFactory, run: Run, data: st.DataObject
+) -> None:
+    path, before = tmp_path_factory.mktemp("fuzz") / "checkpoint-1.pt", state_of(run.whole)["ema"]
+    assert set(readings(path, data.draw(damaged(run.whole)), run.learner)) <= {None, 1}
+    assert all(torch.equal(run.learner.ema[name], value) for name, value in before.items())
+
+
+PLACES = [
+    *(
+        ("config",),
+        ("iteration",),
+        ("ended",),
+        ("done",),
+        ("random",),
+        ("random", "state"),
+        ("net",),
+        ("net", "w1"),
+    ),
+    *(("ema",), ("ema", "b2"), ("best",), ("best", 0), ("best", 2), ("best", 2, "w3"), ("optimizer",)),
+    *(("optimizer", "param_groups"), ("pools",), ("pools", "failures"), ("pools", "perturbed", "states")),
+    *(
+        ("pools", "undisturbed"),
+        ("history",),
+        ("since",),
+        ("history", 0),
+        ("checks",),
+        ("checks", 0),
+        ("checks", 0, 2),
+    ),
+]
+FOREIGN = [None, 1, "x", [], {}, [1], {"right": "x"}, torch.zeros(3), torch.zeros((2, 3), dtype=torch.int64)]
+
+
+def replaced(value: Any, place: tuple[Any, ...], other: Any) -> Any:
+    """The value with another one at a place in it."""
+    if not place:
+        return other
+    key, *rest = place
+    inner = replaced(value[key], tuple(rest), other)
+    if isinstance(value, dict):
+        return {**value, key: inner}
+    return type(value)([*value[:key], inner, *value[key + 1 :]])
+
+
+@settings(max_examples=60)
+@given(st.sampled_from([(), *PLACES]), st.sampled_from(FOREIGN))
+@example(("config",), [])
+@example((), torch.zeros(3))
+@example(("pools", "failures"), torch.zeros(3))
+def test_a_checkpoint_with_another_value_in_it_is_refused_or_used(
+    tmp_path_factory: pytest.TempPathFactory, run: Run, place: tuple[Any, ...], other: Any
+) -> None:
+    """As another version of this program may have written it."""
+    path, changed = tmp_path_factory.mktemp("fuzz") / "checkpoint-1.pt", io.BytesIO()
+    torch.save(replaced(state_of(run.whole), place, other), changed)
+    loaded, *_ = readings(path, changed.getvalue(), run.learner)
+    if loaded is not None:
+        run.learner.step()
+
+
+def test_one_flipped_bit_is_seen(run: Run, tmp_path: Path) -> None:
+    """PyTorch reads past it: the training went on from other weights."""
+    path, content = tmp_path / "checkpoint-1.pt", bytearray(run.whole)
+    content[len(content) // 2] ^= 1
+    torch.load(io.BytesIO(content), weights_only=True)
+    path.write_bytes(content)
+    with pytest.raises(
+        UsageError, match=r"damaged checkpoint .* put a copy of it there, or train with --force"
+    ):
         trainer().load(path)
+    assert path.read_bytes() == content
+
+
+def test_a_checkpoint_that_cannot_be_read_is_not_called_damaged(tmp_path: Path) -> None:
+    (tmp_path / "checkpoint-1.pt").mkdir()
+    with pytest.raises(
+        UsageError, match=r"checkpoint-1\.pt: Is a directory; make it a file that can be read"
+    ):
+        trainer().load(tmp_path / "checkpoint-1.pt")
 
 
 @pytest.mark.parametrize(
@@ -37,12 +155,12 @@ def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
     ids=str,
 )
 def test_a_glance_at_a_checkpoint_of_another_form_is_refused(
-    changed: dict[str, object], tmp_path: Path
+    changed: dict[str, object], run: Run, tmp_path: Path
 ) -> None:
     path = tmp_path / "checkpoint.pt"
-    trainer().save(path)
-    assert glance(path)["iteration"] == 0
-    state = torch.load(path, weights_only=True) | changed
+    path.write_bytes(run.whole)
+    assert glance(path)["iteration"] == 1
+    state = state_of(run.whole) | changed
     torch.save({key: value for key, value in state.items() if value is not None}, path)
     with pytest.raises(UsageError, match="damaged checkpoint"):
         glance(path)

@@ -15,7 +15,6 @@ namespace {
 constexpr unsigned kMostCalls = 40;
 constexpr unsigned kRoom = 16;
 constexpr double kLongestRunS = 0.3e-3;
-constexpr double kMostEarlyS = 2e-3; // that a tile was switched on before
 
 // Takes arguments out of bytes; 0 where they have ended.
 class Source {
@@ -213,9 +212,8 @@ void manage(tilenca_array* a, Source& in, std::vector<uint8_t>& kept) {
     case 0:
         if (tilenca_array_size(a) < 6) { // more only take longer
             const double ppm = in.real();
-            const double start_s = in.real(); // all the time since then has to be run first
-            const bool is_early = std::isfinite(start_s) && start_s < -kMostEarlyS;
-            tilenca_array_add_tile(a, ppm, is_early ? -kMostEarlyS : start_s);
+            const double start_s = in.real(); // all the time since then is run first
+            tilenca_array_add_tile(a, ppm, start_s);
         }
         break;
     case 1:

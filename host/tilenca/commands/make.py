@@ -28,6 +28,7 @@ from tilenca.commands.train import judged
 from tilenca.commands.train_options import add_training_arguments
 from tilenca.commands.train_plan import TrainingPlan, check_out, doubts, make_plan
 from tilenca.commands.train_steps import last_suite, train_model
+from tilenca.evaluation.metrics_file import read_metrics
 from tilenca.evaluation.suites import Suite
 from tilenca.model import cost
 from tilenca.model.file import Model, checkpoint_path, checkpoints, load_model
@@ -79,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
         steps.end(BUILD, f"firmware of model {model.model_id:04X}")
         emulating = _parsed(emulate, ["--model", str(args.out), *(["--json"] if args.json else [])])
         results = _emulated(emulating, steps)
-    metrics = json.loads((args.out / "metrics.json").read_text(encoding="utf-8"))
+    metrics = read_metrics(args.out)
     if args.json:
         print(json.dumps(_document(args, model, image, metrics, results)))
         emulate.tell_notes(results)
@@ -226,7 +227,7 @@ def _is_trained(args: argparse.Namespace, plan: TrainingPlan) -> bool:
     """Whether the folder has the model that this training would make.
 
     Raises:
-        UsageError: it has another model.
+        UsageError: it has another model, or one without measurements.
     """
     if args.force or checkpoints(args.out) or not (args.out / "model.json").exists():
         return False
@@ -241,7 +242,9 @@ def _is_trained(args: argparse.Namespace, plan: TrainingPlan) -> bool:
         plan.recipe.iterations, None if plan.initial is None else f"{plan.initial.model_id:04X}",
     )  # fmt: skip
     if there == asked and model.dimensions == plan.dimensions:
-        return True
+        if {"rows", "targets_held"} <= read_metrics(args.out).keys():
+            return True
+        raise UsageError(f"{args.out}: holds a model without its measurements; --force trains it again")
     raise UsageError(
         f"{args.out}: holds a model of another file, recipe, seed, size or --weights; give another --out, or "
         "--force to replace it"

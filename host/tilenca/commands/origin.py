@@ -12,6 +12,7 @@ from tilenca.base.stdio import warn
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.file import UNKNOWN, Task
 
+MOST_NAME = 255  # bytes; systems refuse longer ones
 NEAR = 3  # folders above a model in which its shape files are looked for
 
 
@@ -32,16 +33,22 @@ def own_shapes(model: Model, folder: Path) -> list[Path]:
     """
     hashes = _hashes(model)
     named = model.metadata.get("shapes") or list(hashes)[:1]
-    if not (isinstance(named, list) and all(isinstance(name, str) for name in named) and named):
+    if not (isinstance(named, list) and all(map(_is_name, named)) and named):
         return [paths.DEFAULT_SHAPES]
     return [_find(name, hashes.get(Path(name).name), folder) for name in named]
 
 
 def _hashes(model: Model) -> dict[str, str]:
     """The SHA-256 of each file that the metadata name, by its name."""
+    sources: list[tuple[str, str]] = []
     with suppress(TypeError, KeyError):
-        return {str(source["file"]): str(source["sha256"]) for source in model.metadata.get("sources", [])}
-    return {}
+        sources = [(str(one["file"]), str(one["sha256"])) for one in model.metadata.get("sources", [])]
+    return {name: sha256 for name, sha256 in sources if _is_name(name)}
+
+
+def _is_name(name: object) -> bool:
+    """Whether it may be the name of a file, and goes into a line."""
+    return isinstance(name, str) and name.isprintable() and len(name.encode()) <= MOST_NAME
 
 
 def _find(name: str, sha256: str | None, folder: Path) -> Path:

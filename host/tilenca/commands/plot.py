@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.base.parsing import read_json
 from tilenca.base.shipped import model_folder
+from tilenca.base.stdio import warn
 from tilenca.commands.arguments import OWN_SHAPES, add_model_argument, add_shapes_argument, seed, whole
 from tilenca.commands.origin import shapes_or_own
+from tilenca.evaluation.metrics_file import read_metrics
 from tilenca.model.file import load_model
 from tilenca.shapes.batch import load_drawings
 from tilenca.shapes.file import find_shape
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from tilenca.views.abilities import Targets
     from tilenca.views.reel import Reel
 
-HISTORY_FILE, METRICS_FILE = "history.csv", "metrics.json"
+HISTORY_FILE = "history.csv"
 FILM_SUFFIXES = (".png", ".svg", ".gif")
 FILM_OPTIONS = ("shape", "then", "every", "replay", "shapes", "steps", "schedule", "seed")
 FILM_STEPS = 19
@@ -111,17 +112,18 @@ def _history(args: argparse.Namespace) -> dict[str, Any]:
     except OSError as error:
         raise unwritable(out, error) from error
     title = f"Training of model {model.model_id:04X}"
-    plot_history(rows, path, columns, title, _targets(args.model / METRICS_FILE))
+    plot_history(rows, path, columns, title, _targets(args.model))
     return {"file": str(path), "model": f"{model.model_id:04X}", "rows": len(rows)}
 
 
-def _targets(path: Path) -> "dict[str, Targets]":
-    """The model's targets by kind; none where it was not measured."""
+def _targets(folder: Path) -> "dict[str, Targets]":
+    """The model's targets by kind; none where it was not measured; damaged measurements are told."""
     from tilenca.views.abilities import targets_by_kind
 
     try:
-        return targets_by_kind(read_json(path.read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError):
+        return targets_by_kind(read_metrics(folder))
+    except UsageError as error:
+        warn(f"note: {error}")
         return {}
 
 

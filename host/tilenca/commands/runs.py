@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tilenca.base.errors import UsageError
-from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.commands.plot import HISTORY_FILE, read_history
+from tilenca.evaluation.metrics_file import read_metrics
 from tilenca.model.file import CHECKPOINTS, checkpoints, load_model
 from tilenca.training.sessions import FILE, Session, sessions_of
 from tilenca.views.table import table
@@ -116,7 +116,7 @@ def _recipe(known: str | None, sessions: list[Session]) -> str | None:
 
 def _finished(folder: Path) -> dict[str, Any]:
     model = load_model(folder)
-    metrics = _metrics(folder / "metrics.json")
+    metrics = read_metrics(folder)
     metadata = model.metadata
     recipe, seed = _if_a(str, metadata.get("recipe_name")), _if_a(int, metadata.get("seed"))
     plan = _if_a(dict, metadata.get("recipe")) or {}
@@ -138,38 +138,6 @@ def _finished(folder: Path) -> dict[str, Any]:
 
 def _if_a(kind: type[T], value: object) -> T | None:
     return value if isinstance(value, kind) else None
-
-
-def _metrics(path: Path) -> dict[str, Any]:
-    """The metrics of a model; empty where there are none.
-
-    Raises:
-        UsageError: they are damaged.
-    """
-    try:
-        metrics = read_json(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return {}
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{path}: cannot be read ({error}); train again") from error
-    if not isinstance(metrics, dict) or not _are_metrics(metrics):
-        raise UsageError(f"{path}: not the metrics of a model; train again")
-    return metrics
-
-
-def _are_metrics(metrics: dict[str, Any]) -> bool:
-    numbers, rows = (metrics.get("iterations"), metrics.get("shortfall")), metrics.get("rows", [])
-    known = all(number is None or isinstance(number, int | float) for number in numbers)
-    return known and isinstance(rows, list) and all(map(_is_row, rows))
-
-
-def _is_row(row: object) -> bool:
-    match row:
-        case {"key": str(), "name": str(), "target": None}:
-            return True
-        case {"key": str(), "name": str(), "target": int() | float(), "holds": bool()}:
-            return True
-    return False
 
 
 def _begun() -> dict[str, Any]:

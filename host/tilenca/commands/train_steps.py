@@ -70,7 +70,7 @@ def train_model(
     metadata = _metadata(args)  # the commit may change while the training runs
     with noted(args.out, training_command(args, str), args.recipe, args.resume) as session:
         try:
-            jobs = _train(args, plan, views, session.began[-1])
+            jobs, failed = _train(args, plan, views, session.began[-1])
         except (InterruptedRunError, KeyboardInterrupt) as error:
             raise _interrupted(args, str(error) or "while training", go_on) from None
         try:
@@ -86,13 +86,22 @@ def train_model(
         if where != args.out:
             move_events(args.out, where, session.began)
     _draw_history(where, result)
-    for path in checkpoints(args.out):
-        path.unlink()
+    if failed:
+        warn(f"note: {args.out}: the checkpoints of all seeds stay; --resume goes on with them")
+    else:
+        for path in checkpoints(args.out) if args.force else [job.checkpoint for job in jobs]:
+            path.unlink()
     return NewModel(where, result.model, result.metrics)
 
 
-def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, began: str) -> "list[Job]":
-    """Trains all seeds in a session that `began` then; returns their jobs, whose checkpoints hold results."""
+def _train(
+    args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, began: str
+) -> "tuple[list[Job], bool]":
+    """Trains all seeds in a session that `began` then.
+
+    Returns:
+        Their jobs, whose checkpoints hold results, and whether any failed.
+    """
     from tilenca.training.runner import train_side_by_side
 
     jobs = jobs_of(args, plan)
@@ -106,7 +115,7 @@ def _train(args: argparse.Namespace, plan: TrainingPlan, views: TrainingViews, b
             failures = train_on_cluster(jobs, args.scheduler, tell)
     for failure in failures:
         warn(failure)
-    return jobs
+    return jobs, bool(failures)
 
 
 def at_once(args: argparse.Namespace, plan: TrainingPlan) -> int:

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from tilenca.base.errors import UsageError
+from tilenca.base.whole_file import write_whole
 from tilenca.emulator.tile import EEPROM_BYTES, EmulatedTile
 from tilenca.emulator.types import port_name
 
@@ -15,7 +16,7 @@ def load_eeprom(tile: EmulatedTile, directory: Path) -> bool:
     Raises:
         UsageError: the file cannot be read, or is not as long as the EEPROM.
     """
-    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    path = _path(tile, directory)
     try:
         contents = path.read_bytes()
     except FileNotFoundError:
@@ -36,13 +37,13 @@ def save_eeprom(tile: EmulatedTile, directory: Path) -> None:
     Raises:
         UsageError: the directory cannot be written.
     """
-    path = directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"
+    path, remedy = _path(tile, directory), "give --eeprom a directory that can be written"
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        fresh = path.with_suffix(".new")
-        fresh.write_bytes(tile.read_eeprom())
-        fresh.replace(path)
     except OSError as error:
-        raise UsageError(
-            f"{path}: {error.strerror}; give --eeprom a directory that can be written"
-        ) from error
+        raise UsageError(f"{directory}: {error.strerror}; {remedy}") from error
+    write_whole(path, tile.read_eeprom(), remedy, UsageError)
+
+
+def _path(tile: EmulatedTile, directory: Path) -> Path:
+    return directory / f"{port_name(tile.index)}{EEPROM_SUFFIX}"

@@ -27,6 +27,7 @@ from tilenca.shapes.variant import CHOOSING, LAST, TRAINED
 
 VARIANTS = {CHOOSING: 12, LAST: 30}  # of each class
 FEWEST = 10  # drawings of no class of which a target is asked
+MOST_SETTING = 1e6  # of a recipe, as far as it says what is asked
 MOST_DRAWN = 200  # drawings of a file up to which all are measured, and else so many of them
 INDEXED = 600  # variants that drawings of no class are compared with
 VARIANT_TRIES = 300  # in a row without a new one
@@ -97,7 +98,7 @@ def recorded_aims(model: Model) -> Aims:
     recipe = model.metadata.get("recipe", {})
     names = ("stretch", "damaged", "unknown", "varied", "unlabelled")
     values = [recipe.get(name, 1.0 if name == "stretch" else 0.0) for name in names]
-    if not all(isinstance(value, int | float) for value in values):
+    if not all(isinstance(value, int | float) and 0 <= value <= MOST_SETTING for value in values):
         raise UsageError(f"model {model.model_id:04X}: metadata.recipe has no numbers in it; train it again")
     stretch, *shares = map(float, values)
     return aims_with(stretch, *shares, directions=model.dimensions.directions)

@@ -1,13 +1,17 @@
 """Checkpoints: a training run in a file, which is written whole or not at all."""
 
 import io
+import zipfile
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
-from tilenca.base.errors import UsageError
+from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.whole_file import write_whole
+from tilenca.model.file import Dimensions
 
 State = dict[str, Any]
 
@@ -45,16 +49,20 @@ def glance(path: Path) -> State:
             "iteration": int() as iteration,
             "history": [*history],
             "checks": [*checks],
-        } if all(isinstance(label, str) for label in labels) and _are_numbers(history, checks):
+        } if all(isinstance(label, str) for label in labels) and _are_rows(history, checks):
             return {"config": config, "iteration": iteration, "history": history, "checks": checks}
-    raise UsageError(f"{path}: damaged checkpoint (of another form); train with --force to start anew")
+    raise damaged(path, "of another form")
 
 
-def _are_numbers(history: list[Any], checks: list[Any]) -> bool:
-    """Whether rows are (iteration, loss, agreement), and those of measurements begin with two numbers."""
-    rows = [tuple(row) if isinstance(row, list | tuple) else () for row in history]
-    rows += [(*row[:2], 0) if isinstance(row, list | tuple) else () for row in checks]
-    return all(len(row) == 3 and all(isinstance(value, int | float) for value in row) for row in rows)
+def _are_rows(history: list[Any], checks: list[Any]) -> bool:
+    """Whether rows are (iteration, loss, agreement), and of measurements (iteration, shortfall, shares)."""
+    rows = [row for row in (*history, *checks) if isinstance(row, list | tuple) and len(row) == 3]
+    shares = [row[2] for row in rows[len(history) :] if isinstance(row[2], dict)]
+    numbers = [value for row in rows[: len(history)] for value in row]
+    numbers += [value for row in rows[len(history) :] for value in row[:2]]
+    numbers += [value for share in shares for value in share.values()]
+    whole = len(rows) == len(history) + len(checks) and len(shares) == len(checks)
+    return whole and all(isinstance(value, int | float) for value in numbers)
 
 
 def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
@@ -71,17 +79,75 @@ def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
                 f"{path}: made with another {key}; give the arguments of the run to resume, or train "
                 "into another directory"
             )
+    if not _has_result(state, Dimensions(**config["dimensions"])):
+        raise damaged(path, "of another form")
     return state
+
+
+def _has_result(state: State, dimensions: Dimensions) -> bool:
+    """Whether the values are there that a finished training is made of."""
+    match state:
+        case {
+            "ended": bool(),
+            "done": bool(),
+            "history": [*history],
+            "checks": [*checks],
+            "ema": ema,
+            "best": None | (int(), int() | float(), _) as best,
+        }:
+            weights = (ema,) if best is None else (ema, best[2])
+            return _are_rows(history, checks) and all(_are_weights(one, dimensions) for one in weights)
+    return False
+
+
+def _are_weights(weights: Any, dimensions: Dimensions) -> bool:
+    shapes = dimensions.shapes()
+    return (
+        isinstance(weights, dict)
+        and weights.keys() == shapes.keys()
+        and all(
+            isinstance(value, torch.Tensor) and value.dtype == torch.float32 for value in weights.values()
+        )
+        and all(weights[name].shape == shape for name, shape in shapes.items())
+    )
+
+
+def array_like(tensor: torch.Tensor, dtype: np.dtype[Any], row: tuple[int, ...]) -> NDArray[Any]:
+    """(N, *row) of `dtype`: a copy of a tensor of a checkpoint.
+
+    Raises:
+        ValueError: it is of another type or form.
+    """
+    array: NDArray[Any] = tensor.cpu().numpy().copy()
+    if array.dtype != dtype or array.ndim == 0 or array.shape[1:] != row:
+        raise ValueError(f"{array.dtype} of {array.shape}, and not {dtype} of (N, {row})")
+    return array
+
+
+def damaged(path: Path, reason: str) -> UsageError:
+    """The refusal of a checkpoint that cannot be used; the file stays."""
+    return UsageError(
+        f"{path}: damaged checkpoint ({reason}); put a copy of it there, or train with --force to start anew"
+    )
 
 
 def _load(path: Path, device: torch.device) -> State:
     try:
-        state: State = torch.load(path, map_location=device, weights_only=True)
-        state["config"], state["iteration"]
+        data = path.read_bytes()
     except FileNotFoundError as error:
         raise UsageError(f"{path}: nothing to resume; train without --resume") from error
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}; make it a file that can be read") from error
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if (name := archive.testzip()) is not None:  # torch reads past a wrong checksum
+                raise ValueError(f"wrong checksum of {name}")
+        state: Any = torch.load(io.BytesIO(data), map_location=device, weights_only=True)
+    except torch.cuda.OutOfMemoryError as error:
+        raise TilencaError(f"{path}: no room for it on {device}; give another --device") from error
     except Exception as error:  # any exception of torch's unpickler
-        raise UsageError(
-            f"{path}: damaged checkpoint ({type(error).__name__}); train with --force to start anew"
-        ) from error
-    return state
+        raise damaged(path, type(error).__name__) from error
+    match state:
+        case {"config": {}, "iteration": int()}:
+            return {str(key): value for key, value in state.items()}
+    raise damaged(path, "of another form")

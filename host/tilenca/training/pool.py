@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import Shape
+from tilenca.training.checkpoint import array_like
 from tilenca.training.curriculum import DRAWN, Curriculum
 from tilenca.training.pool_batch import Numbers, States, Taken
 from tilenca.training.recipe import Recipe
@@ -188,11 +189,13 @@ class Pools:
         return state | {"failures": torch.from_numpy(self.failures), "renewed": renewed}
 
     def restore(self, state: dict[str, Any]) -> None:
-        """Continues with what `state` returned."""
+        """Continues with what `state` returned; any exception: it is of another form than this run's."""
         for name in ("perturbed", "undisturbed"):
+            pool = getattr(self, name)
             for field in fields(Pool):
-                setattr(getattr(self, name), field.name, state[name][field.name].cpu().numpy().copy())
-        self.failures = state["failures"].cpu().numpy().copy()
+                own = getattr(pool, field.name)
+                setattr(pool, field.name, array_like(state[name][field.name], own.dtype, own.shape[1:]))
+        self.failures = array_like(state["failures"], self.failures.dtype, ())
         shapes = [Shape(*values) for values in state["renewed"]]
         self.curriculum = self.curriculum.with_drawings(np.flatnonzero(~self._lasting), shapes)
 

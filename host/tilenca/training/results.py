@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tilenca.base.errors import TilencaError
+from tilenca.base.errors import TilencaError, UsageError
 from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.evaluation.card import render_card
+from tilenca.evaluation.metrics_file import METRICS_FILE, read_metrics
 from tilenca.model.file import Model
 
 
@@ -58,20 +59,20 @@ def keep(directory: Path, result: Result) -> Path:
 def _better(directory: Path, result: Result) -> float | None:
     """The shortfall of the model of the same drawings that lies there, if it is smaller."""
     try:
-        shortfall = float(read_json((directory / "metrics.json").read_text(encoding="utf-8"))["shortfall"])
+        shortfall = float(read_metrics(directory)["shortfall"])
         old = read_json((directory / "model.json").read_text(encoding="utf-8"))
         same = (
             tuple(old["labels"]) == result.model.labels
             and old.get("metadata", old.get("made"))["sources"] == result.model.metadata["sources"]
         )
-    except (OSError, ValueError, KeyError, TypeError):
+    except (UsageError, OSError, ValueError, KeyError, TypeError):
         return None
     return shortfall if same and shortfall < result.metrics["shortfall"] else None
 
 
 def _write(directory: Path, result: Result) -> None:
     result.model.save(directory)
-    (directory / "metrics.json").write_text(json.dumps(result.metrics, indent=2) + "\n", encoding="utf-8")
+    (directory / METRICS_FILE).write_text(json.dumps(result.metrics, indent=2) + "\n", encoding="utf-8")
     (directory / "history.csv").write_text(history_csv(result), encoding="utf-8")
     (directory / "README.md").write_text(render_card(result.model, result.metrics), encoding="utf-8")
 

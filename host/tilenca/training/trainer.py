@@ -17,7 +17,7 @@ from tilenca.base.errors import TilencaError
 from tilenca.model.file import Model
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
-from tilenca.training.checkpoint import read_checkpoint, write_checkpoint
+from tilenca.training.checkpoint import damaged, read_checkpoint, write_checkpoint
 from tilenca.training.config import Config
 from tilenca.training.curriculum import Curriculum
 from tilenca.training.loss import GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
@@ -249,13 +249,15 @@ class Trainer:
     def load(self, path: Path) -> None:
         """Continues where a checkpoint was written, see `read_checkpoint`."""
         state = read_checkpoint(path, self.config.as_json(), self.device)
-        self.net.load_state_dict(state["net"])
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.pools.restore(state["pools"])
-        self.random.bit_generator.state = state["random"]
-        self.history, self._since, self.checks = (
-            [tuple(row) for row in state[rows]] for rows in ("history", "since", "checks")
-        )
+        try:
+            self.net.load_state_dict(state["net"])
+            self.optimizer.load_state_dict(state["optimizer"])
+            self.pools.restore(state["pools"])
+            self.random.bit_generator.state = state["random"]
+            self._since = [(float(loss), float(agreement)) for loss, agreement in state["since"]]
+        except Exception as error:  # any exception of torch and numpy on values of another form
+            raise damaged(path, type(error).__name__) from error
+        self.history, self.checks = ([tuple(row) for row in state[rows]] for rows in ("history", "checks"))
         self.ema, self._best = state["ema"], state["best"]
         self.iteration, self.ended = state["iteration"], state["ended"]
 

@@ -57,13 +57,13 @@ class Targets:
 
 
 def targets_by_kind(metrics: Mapping[str, Any]) -> dict[str, Targets]:
-    """The targets of each kind of measurement that has any.
+    """The targets of each kind of measurement that has any; none where nothing was measured.
 
     Args:
         metrics: as in metrics.json.
     """
     kinds: dict[str, list[Mapping[str, Any]]] = {}
-    for row in metrics["rows"]:
+    for row in metrics.get("rows", []):
         if row["target"] is not None:
             kinds.setdefault(row["key"], []).append(row)
     return {

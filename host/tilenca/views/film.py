@@ -2,6 +2,7 @@
 
 import io
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 from tilenca.shapes.glyphs import SEGMENT_NAMES, screen_colour
@@ -13,14 +14,23 @@ from matplotlib.axes import Axes  # isort: skip
 from matplotlib.collections import PolyCollection  # isort: skip
 from matplotlib.figure import Figure  # isort: skip
 from matplotlib.patches import FancyBboxPatch  # isort: skip
-from PIL import Image  # isort: skip
+from PIL import Image, ImageChops  # isort: skip
+from PIL.GifImagePlugin import getdata, getheader  # isort: skip
 
 MAX_PANELS = 24
 TILE_IN, GAP_IN, TITLE_IN, CAPTION_IN, MARGIN_IN = 0.3, 0.32, 0.72, 0.45, 0.15
 LEAST_PANEL_IN = 0.85
 LEAST_COLUMNS = 5
 CHARACTER_EM = 0.6  # a character is no wider in the mean
-GIF_TILE_IN, GIF_WIDEST_IN, GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = 0.7, 7.0, 5.2, 0.4, 100
+GIF_TILE_IN, GIF_WIDEST_IN, GIF_TALLEST_IN, GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = (
+    0.7,
+    7.0,
+    14.0,
+    5.2,
+    0.4,
+    100,
+)
+CLEAR = 255  # the index of what stays as it was
 
 DARK, DARK_EDGE = "#3a3f47", "#2b2f36"
 WHITE = "#ffffff"
@@ -195,22 +205,47 @@ def draw_strip(reel: Reel, path: Path) -> int:
 def draw_gif(reel: Reel, path: Path) -> int:
     """Draws every picture of a film as a frame of an animated GIF, which repeats for ever; returns how many.
 
+    However long the film is, no more than two frames are held at a time.
+
     Raises:
         TilencaError: see `tilenca.views.plots.save`.
     """
-    with styled():
-        frames = [_frame(reel, number) for number in range(len(reel.pictures))]
-    times = [round(1000 * picture.seconds) for picture in reel.pictures]
     try:
-        frames[0].save(path, save_all=True, append_images=frames[1:], duration=times, loop=0)
+        with styled(), path.open("wb") as file:
+            before: Image.Image | None = None
+            for number, picture in enumerate(reel.pictures):
+                frame = _frame(reel, number)
+                file.writelines(_encoded(frame, before, round(1000 * picture.seconds)))
+                before = frame
+            file.write(b";")
     except OSError as error:
         raise unwritable(path, error) from error
-    return len(frames)
+    return len(reel.pictures)
+
+
+def _encoded(frame: Image.Image, before: Image.Image | None, milliseconds: int) -> Iterator[bytes]:
+    """A frame of a GIF: its head and the first one, or what is new since the one before."""
+    if before is None:
+        first = frame.quantize(method=Image.Quantize.MEDIANCUT)
+        head, _ = getheader(first, info={"loop": 0, "duration": milliseconds})
+        yield from head
+        yield from getdata(first, duration=milliseconds)
+        return
+    red, green, blue = ImageChops.difference(frame, before).split()
+    change = ImageChops.lighter(ImageChops.lighter(red, green), blue)
+    box = change.getbbox() or (0, 0, 1, 1)
+    part = frame.crop(box).quantize(CLEAR, Image.Quantize.MEDIANCUT)
+    colours = part.getpalette() or []
+    part.putpalette(colours + [0] * (3 * (CLEAR + 1) - len(colours)))
+    part.paste(CLEAR, mask=change.crop(box).point([255] + [0] * 255))
+    yield from getdata(
+        part, box[:2], duration=milliseconds, transparency=CLEAR, disposal=1, include_color_table=True
+    )
 
 
 def _frame(reel: Reel, number: int) -> Image.Image:
     rows, cols = reel.size
-    tile_in = min(GIF_TILE_IN, GIF_WIDEST_IN / cols)
+    tile_in = min(GIF_TILE_IN, GIF_WIDEST_IN / cols, GIF_TALLEST_IN / rows)
     width = max(tile_in * cols + 2 * MARGIN_IN, GIF_WIDTH_IN)
     top = TITLE_IN + GIF_CAPTION_IN
     figure = Figure(figsize=(width, top + tile_in * rows + MARGIN_IN), dpi=GIF_DPI)
@@ -219,4 +254,4 @@ def _frame(reel: Reel, number: int) -> Image.Image:
     _panel(figure, ((width - tile_in * cols) / 2, top), tile_in, reel, number)
     with io.BytesIO() as png:
         figure.savefig(png, format="png")
-        return Image.open(png).convert("RGB").quantize(method=Image.Quantize.MEDIANCUT)
+        return Image.open(png).convert("RGB")

@@ -3,6 +3,7 @@
 import { sorted } from "./faults.js";
 import { Lines } from "./lines.js";
 import { SIDES } from "./sides.js";
+import { subjectOf } from "./subject.js";
 
 const NO_POWER = "no power";
 const MOST_REFUSAL = 300; // characters
@@ -20,12 +21,6 @@ export const refused = (reason) => ({ time: 0, refused: reason.slice(0, MOST_REF
 
 /** @param {number} index */
 export const portName = (index) => `tile-${String(index + 1).padStart(2, "0")}`;
-
-/** The name of a sentence, and the side of a `$LINK`. @param {string} raw */
-function subjectOf(raw) {
-  const [name, , , side] = raw.split(",");
-  return name === "$LINK" ? `${name} ${side}` : name;
-}
 
 /** @param {number} one @param {number} other */
 const byPort = (one, other) => (portName(one) < portName(other) ? -1 : Number(one !== other));

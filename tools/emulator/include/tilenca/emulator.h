@@ -81,7 +81,7 @@ TILENCA_API const char* tilenca_emulator_last_error(void);
 // --- arrays ---
 
 // Tiles that run an ELF or Intel HEX file. `bootloader`: a file for the boot section, where the chips then
-// start after every reset; null: none. `ppm` [tiles]: each tile's clock error. `switch_on_s` [tiles].
+// start after every reset; null: none. `ppm` [tiles]: each tile's clock error. `switch_on_s` [tiles]: 0 to 1e9.
 // Free the result with tilenca_array_free.
 TILENCA_API tilenca_array* tilenca_array_new(const char* image, const char* bootloader, unsigned tiles,
                                              const double* ppm, const double* switch_on_s);
@@ -89,7 +89,7 @@ TILENCA_API tilenca_array* tilenca_array_new(const char* image, const char* boot
 TILENCA_API void tilenca_array_free(tilenca_array* array);
 // How many tiles it has.
 TILENCA_API int tilenca_array_size(tilenca_array* array);
-// Returns the new tile's index.
+// Returns the new tile's index. All the time since `switch_on_s` (0 to 1e9) is run for it first.
 TILENCA_API int tilenca_array_add_tile(tilenca_array* array, double ppm, double switch_on_s);
 // Switches a tile off for good and takes its cables away. The others keep their indices, and so does it.
 TILENCA_API int tilenca_array_remove_tile(tilenca_array* array, unsigned tile);

@@ -29,7 +29,7 @@ avr::PinId pin_of(char port, unsigned bit) {
 
 Clock clock_of(double ppm, double switch_on_s) {
     check_range("a clock error in ppm", ppm, -kMostError * 1e6, kMostError * 1e6);
-    check_range("a time of switching on", switch_on_s, -1e9, 1e9);
+    check_range("a time of switching on", switch_on_s, 0.0, 1e9);
     return Clock(ppm * 1e-6, 0, switch_on_s * kTicksPerSecond);
 }
 
