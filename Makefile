@@ -127,7 +127,7 @@ sweep: setup-train ## measure dead tiles and lost messages at three sizes, into 
 
 report: setup-train ## measure every claim again (some fifteen minutes of two cores), into docs/RESULTS.md and docs/results.html
 	@$(PIO) run -s -e $(ENV)
-	@$(TILENCA) export --model digits-hands --build
+	@$(TILENCA) export --model digits-drawn --build
 	@$(TILENCA) report --out build/report
 	@sed 's/`report.html`/[results.html](results.html)/' build/report/RESULTS.md > docs/RESULTS.md
 	@cp build/report/report.html docs/results.html
