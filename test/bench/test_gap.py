@@ -72,8 +72,8 @@ def test_pairs_are_compared_one_by_one() -> None:
     found = gap.Pairs(np.tile(tiles, 100), np.tile(simulator, 100))
     assert (found.same, found.near) == (0.5, 0.75)
     assert found.gap(5) == (0.0, 3 / 400), "no pair differs"
-    assert found.gap(6) == (0.0, pytest.approx(1.96 * 0.5**0.5 / 20)), "as many differ either way"
-    assert found.gap(8) == (-0.25, pytest.approx(1.96 * 0.1875**0.5 / 20))
+    assert found.gap(6) == pytest.approx((0.0, 1.96 * 0.5**0.5 / 20)), "as many differ either way"
+    assert found.gap(8) == pytest.approx((-0.25, 1.96 * 0.1875**0.5 / 20))
 
 
 def test_design_has_the_rows_of_each_model() -> None:
