@@ -131,8 +131,8 @@ def test_an_unknown_id_has_no_model_and_a_folder_may_be_asked_first(tmp_path: Pa
 
 def test_a_model_without_a_dash_says_so() -> None:
     assert without_a_dash(DIGITS) is None
-    letters = load_model(paths.MODELS / "letters")
-    assert "has no class for other drawings" in str(without_a_dash(letters))
+    pentominoes = load_model(paths.MODELS / "pentominoes")
+    assert "has no class for other drawings" in str(without_a_dash(pentominoes))
 
 
 def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tmp_path: Path) -> None:
