@@ -94,6 +94,7 @@ def test_on_a_phone_what_was_asked_for_is_in_view(browser: Browser, server: Page
         for name in ("Draw your own", "1, digits/1"):
             page.get_by_role("button", name=name, exact=True).tap()
             visit.wait_until(f"({seen})(document.getElementById('board'))")
+        page.get_by_role("button", name="Hand").tap()
         page.evaluate("scrollTo(0, 0)")
         page.locator(".tile").first.tap()
         visit.wait_until(f"({seen})(document.querySelector('#inspector h2'))")

@@ -125,3 +125,37 @@ def test_a_step_that_is_not_done_stays_undone(visit: Visit, server: PageServer) 
     visit.page.wait_for_timeout(1500)
     assert visit.page.locator("#lesson .done").inner_text() == ""
     assert visit.page.get_by_role("button", name="Skip").is_visible()
+
+
+# A lesson of its own beside that of the page, whose tiles know letters only, and then digits.
+LETTERS = """async () => {
+  const { Lesson } = await import("./components/lesson.js");
+  const { Tiles } = await import("./stream/tiles.js");
+  const { STREAM_VERSION } = await import("./stream/source.js");
+  const [root, top] = ["section", "div"].map((one) => document.createElement(one));
+  const [tiles, done] = [new Tiles(), []];
+  const names = [["letters", "A"], ["digits", "8"]];
+  const models = names.map(([name, label]) => ({ name, labels: [label], id: name }));
+  const stream = { time: 0, stream: STREAM_VERSION, source: "emulated", models };
+  const tell = (drawings) => tiles.take([{ ...stream, drawings }]);
+  const lesson = new Lesson(root, top, tiles, {
+    send: ({ do: name }) => done.push(name), open: () => done.push("open"), selected: () => null,
+    choose: ({ name }) => done.push(`choose ${name}`),
+  });
+  tell([]);
+  lesson.go(3);
+  const use = root.querySelector(".primary");
+  const offered = use.textContent;
+  use.click();
+  tell([{ name: "digits/8", label: "8", rows: ["1111", "1001", "1111", "1001", "1111"] }]);
+  lesson.begin();
+  return [offered, ...done, root.hidden, root.querySelector("h3").textContent, use.hidden];
+}"""
+
+
+def test_with_letters_it_offers_the_digits_and_goes_on_with_them(visit: Visit, server: PageServer) -> None:
+    visit.page.goto(server.url)
+    visit.page.locator(".tile").first.wait_for()
+    assert visit.page.evaluate(LETTERS) == [
+        "Use digits", "choose digits", "open", False, "Agreement travels", True,
+    ]  # fmt: skip
