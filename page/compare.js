@@ -19,9 +19,9 @@ class Run {
     this.model = element("select", { onchange: () => this.change({ model: this.model.value, shape: null, draw: null }) });
     this.shape = element("select", { onchange: () => this.change({ shape: this.shape.value, draw: null }) });
     this.loss = element("input", { type: "number", min: 0, max: 100, step: 0.5, class: "number", onchange: () => this.changeLoss() });
-    this.seed = element("input", { type: "number", min: 0, step: 1, class: "number", onchange: () => this.change({ seed: this.seed.value || "0" }) });
+    this.seed = element("input", { type: "number", title: "Another seed is other chance: when each tile is switched on, and which bytes get lost", min: 0, step: 1, class: "number", onchange: () => this.change({ seed: this.seed.value || "0" }) });
     /** @param {string} text @param {HTMLElement} control */
-    const field = (text, control) => element("label", {}, text, control);
+    const field = (text, control) => element("label", { title: control.title }, text, control);
     this.root = element("section", { class: "run", "aria-label": `The ${name} run` },
       element("form", { onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
         field("Model", this.model), field("Drawing", this.shape), field("Lost bytes (%)", this.loss), field("Seed", this.seed)),
@@ -82,6 +82,8 @@ function note() {
   if (runs.length < NAMES.length) return;
   const address = new URLSearchParams(NAMES.map((name, index) => [name, runs[index].query.toString()]));
   history.replaceState(null, "", `?${address}${location.hash}`);
+  const leave = /** @type {HTMLAnchorElement} */ (byId("leave"));
+  leave.href = `./?${runs[0].query}${location.hash}`;
 }
 
 const play = element("button", { type: "button", onclick: () => pace(speed, !paused) }, "Pause");
@@ -118,7 +120,6 @@ show();
 for (const name of NAMES) runs.push(new Run(name));
 byId("runs").append(...runs.map(({ root }) => root));
 note();
-/** @type {HTMLAnchorElement} */ (byId("leave")).href = `./${location.hash}`;
 
 addEventListener("message", ({ origin, source, data }) => {
   if (origin !== location.origin || !data?.tilenca?.here) return;

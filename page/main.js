@@ -5,18 +5,20 @@ import { Agreement } from "./components/agreement.js";
 import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
 import { lostWords } from "./components/connection.js";
-import { byId } from "./components/dom.js";
+import { bring, byId } from "./components/dom.js";
 import { obeyParent, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
 import { Hint } from "./components/hint.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
+import { Left } from "./components/left.js";
 import { LensPanel } from "./components/lens.js";
 import { Lesson } from "./components/lesson.js";
 import { Notice } from "./components/notice.js";
 import { offerOnly, refusal } from "./components/offer.js";
 import { Share } from "./components/share.js";
+import { SharedRun } from "./components/shared.js";
 import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
@@ -25,7 +27,7 @@ import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
 import { openOwnRecording, openRecording } from "./stream/recording.js";
-import { Run, TOO_MUCH } from "./stream/run.js";
+import { Run } from "./stream/run.js";
 import { openServer } from "./stream/socket.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
@@ -42,6 +44,7 @@ function send(command) {
     notice.say(refusal(tiles));
     return;
   }
+  left.note(command);
   run.note(command);
   hint.note(command.do);
   source.send(command);
@@ -55,6 +58,7 @@ const deeds = {
     const chosen = port === board.selected ? null : port;
     board.select(chosen);
     inspector.show(chosen);
+    if (chosen) bring(inspector.root.querySelector("header"));
   },
   /** @param {Place} place */
   put: ([row, col]) => send({ do: "put", row, col }),
@@ -115,18 +119,22 @@ const deeds = {
 };
 
 const notice = new Notice(byId("notice"));
+const left = new Left(tiles, run, notice);
 const hint = new Hint(byId("hint"), tiles);
 const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
-const agreement = new Agreement(tiles);
+const agreement = new Agreement(tiles, (seconds) => timeline.go(seconds));
 const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }));
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
-  link: linkUntilNow,
+  links() {
+    const history = run.link();
+    return { now: addressOf(run.linkNow()), history: history && addressOf(history) };
+  },
   lens: () => board.lens,
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
-  say: (text) => notice.say(text),
+  say: (text, stays) => (stays ? notice.stay(text) : notice.say(text)),
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
   replay: (events, isCut) => usb.release(() => {
@@ -138,9 +146,14 @@ new Share(byId("top-deeds"), tiles, recorder, {
 });
 const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
   send,
-  open: (cells, speed) => run.open({ ...readAddress("", tiles.drawings), cells, speed }),
+  open(cells, speed) {
+    left.leave();
+    run.open({ ...readAddress("", tiles.drawings), cells, speed });
+  },
   selected: () => board.selected,
+  choose: chooseModel,
 });
+const shared = new SharedRun(tiles, run, (command) => source.send(command));
 const drawings = new Drawings(byId("drawings"), { slide: slideUnder, clear: drawOwn, model: chooseModel });
 const fleet = new FleetPanel(byId("fleet"), tiles, deeds);
 const lens = new LensPanel(byId("lens"), byId("scale"), tiles, (one) => board.look(one));
@@ -163,6 +176,7 @@ function slideUnder(drawing) {
   const row = view.top + Math.round((view.rows - drawing.rows.length) / 2);
   const col = view.left + Math.round((view.cols - drawing.rows[0].length) / 2);
   send({ do: "arrange", cells: cellsOf(drawing.rows).map(([r, c]) => [r + row, c + col]) });
+  bring(board.root);
 }
 
 /** An empty board, and the tool to draw on it. */
@@ -170,28 +184,29 @@ function drawOwn() {
   deeds.select(null);
   const [first] = tiles.laid();
   if (first) {
+    left.clear((seconds) => timeline.go(seconds));
     send({ do: "arrange", cells: [first.place] });
     send({ do: "pull", port: first.port });
   }
   bar.choose("pencil");
+  bring(board.root);
 }
 
 /** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
-  const look = new URLSearchParams(location.search).get("look");
-  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }) });
+  left.leave();
+  const given = new URLSearchParams(location.search);
+  const [look, step] = ["look", "lesson"].map((name) => given.get(name));
+  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }), ...(step && { lesson: step }) });
   history.replaceState(null, "", `?${query}${location.hash}`);
   run.start = null;
+  run.wantedModel = "";
   source.close();
   source = open(listener);
 }
 
-/** The address of the run as it was, with all that hands did, until now. */
-function linkUntilNow() {
-  const query = run.link();
-  if (query === null) notice.say(TOO_MUCH);
-  return query === null ? location.href : new URL(query + location.hash, location.href).href;
-}
+/** The whole address with a query, from `?` on. @param {string} query */
+const addressOf = (query) => new URL(query + location.hash, location.href).href;
 
 /** Notes what lies on the board now, in the address. */
 function remember() {
@@ -214,6 +229,7 @@ function show(events) {
     if (tiles.runs === 0) run.withoutRefused();
   }
   lesson.update();
+  shared.update();
   lens.update();
   board.update(now);
   hint.update();
@@ -255,7 +271,7 @@ function tellFailed() {
 /** @type {import("./stream/source.js").Listener} */
 const listener = {
   onEvents: show,
-  onOpen: () => notice.clear(),
+  onOpen: () => notice.settle(),
   onWhole: (events) => recorder.keep(events),
   onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
 };

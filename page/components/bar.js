@@ -85,7 +85,7 @@ export class Bar {
     });
     this.speed = element("output", { for: "speed", class: "speed-words" });
     this.noise = element("input", {
-      type: "range", min: 0, max: MOST_LOSS, step: 0.5, value: 0, id: "noise", "aria-label": "Lost bytes",
+      type: "range", min: 0, max: MOST_LOSS, step: 0.5, value: 0, id: "noise", "aria-label": "Lost bytes", title: "The share of bytes that get lost on all cables",
       oninput: () => deeds.noise(Number(this.noise.value) / 100),
     });
     this.noiseWords = element("output", { for: "noise", class: "speed-words" });

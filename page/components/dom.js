@@ -51,4 +51,9 @@ export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Scrolls to an element, if it is out of sight. @param {Element | null} wanted */
+export function bring(wanted) {
+  wanted?.scrollIntoView({ block: "nearest", behavior: calm.matches ? "auto" : "smooth" });
+}
+
 export const calm = matchMedia("(prefers-reduced-motion: reduce)");

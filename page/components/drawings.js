@@ -3,9 +3,12 @@
 /** @import { Drawing, Model } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { cellsOf } from "../stream/drawing.js";
-import { cssColour } from "../stream/led.js";
+import { seenColour } from "../stream/led.js";
 import { PENCIL } from "./bar.js";
 import { element, icon, svg } from "./dom.js";
+
+// The brighter one of --housing in styles/base.css.
+const HOUSING = [29, 30, 35];
 
 /** @param {Drawing} drawing @param {string} colour */
 function thumbnail(drawing, colour) {
@@ -53,7 +56,7 @@ export class Drawings {
           type: "button", "aria-pressed": "false", "aria-label": `${one.label}, ${one.name}`, title: one.name,
           onclick: () => this.deeds.slide(one),
         });
-        button.append(thumbnail(one, cssColour(tiles.look(one.label).rgb)));
+        button.append(thumbnail(one, seenColour(tiles.look(one.label).rgb, HOUSING)));
         this.buttons.set(one.name, button);
         list.append(button);
       }

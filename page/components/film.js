@@ -11,6 +11,7 @@ const FRAMES_PER_S = 12.5; // GIFs count in hundredths of a second
 const LAST_S = 1.5; // the last frame stands so long
 const SAMPLES = 8; // frames whose colours the palette is made of
 const PORTION = 2000; // events between two breaths
+const TELL_MS = 1000; // between two words on how long it takes
 const SIZE = 64; // pixels of a tile's place
 
 /** The times of the frames, in seconds of the run. @param {{from: number, to: number, seconds: number}} span what of the run, and how long it is to last */
@@ -47,9 +48,10 @@ async function* tilesAt(recorded, times) {
  * @param {StreamEvent[]} recorded of `Recorder.recording`
  * @param {{from: number, to: number, seconds: number}} span
  * @param {Lens | null} lens
+ * @param {(left: number) => void} tell the seconds that it will still take, about once a second
  * @returns {Promise<Blob>}
  */
-export async function boardFilm(recorded, span, lens) {
+export async function boardFilm(recorded, span, lens, tell = () => {}) {
   const times = frameTimes(span);
   /** @type {Place[]} */
   const places = [];
@@ -72,8 +74,15 @@ export async function boardFilm(recorded, span, lens) {
   colours.choose();
   const gif = new Gif(canvas.width, canvas.height, colours.palette);
   let left = times.length;
+  const began = performance.now();
+  let told = began;
   for await (const tiles of tilesAt(recorded, times)) {
     gif.add(colours.entries(picture(tiles)), --left ? 100 / FRAMES_PER_S : 100 * LAST_S);
+    const now = performance.now();
+    if (now - told > TELL_MS) {
+      told = now;
+      tell(((now - began) / 1000) * (left / (times.length - left)));
+    }
     await breath();
   }
   return gif.blob();

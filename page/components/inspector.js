@@ -15,6 +15,17 @@ import { Settings, numberField, showValue } from "./settings.js";
 const MOST_SKEW_PPM = 100_000;
 const SIDE_NAMES = ["North", "East", "South", "West"];
 
+/** What the buttons do, by the commands that they need. @type {Record<string, string>} */
+const HELP = {
+  pull: "Takes it off the board; a click on the empty place puts a tile in",
+  power: "Without power it falls silent and forgets what it thinks; switched on, it boots",
+  freeze: "It keeps its numbers and sends them on, and thinks no more until Thaw",
+  reset: "Starts its program anew, as the reset pin does",
+  restart: "Its button: it forgets what it thinks, and begins again without booting",
+  blink: "Its light blinks, so that you find it",
+  turn: "Turned by a quarter no link works, until it is turned back",
+};
+
 /**
  * @typedef {{
  *   select: (port: string | null) => void,
@@ -67,9 +78,9 @@ export class Inspector {
     /** @type {HTMLElement[]} */
     this.arrives = [];
     this.facts = element("dl", { class: "facts" });
-    this.guess = element("p", { class: "guess" });
+    this.guess = element("p", { class: "guess", title: "Margin: the best score less the second best; below 8 it is torn, from 64 on sure" });
     /** @param {string} text @param {string} needs @param {() => void} act */
-    const button = (text, needs, act) => element("button", { type: "button", "data-needs": needs, onclick: act }, text);
+    const button = (text, needs, act) => element("button", { type: "button", "data-needs": needs, title: HELP[needs], onclick: act }, text);
     this.pull = button("Pull out", "pull", () => deeds.pull(this.port));
     this.power = button("", "power", () => deeds.power(this.port, !this.tile?.powered));
     this.freeze = button("", "freeze", () => deeds.freeze(this.port, !this.tile?.frozen));
@@ -78,7 +89,7 @@ export class Inspector {
     this.blink = button("Blink", "blink", () => deeds.blink(this.port));
     this.turn = button("", "turn", () => deeds.turn(this.port, !this.tile?.turned));
     this.clock = numberField(
-      { name: "skew", title: "Clock too fast (ppm)", low: -MOST_SKEW_PPM, high: MOST_SKEW_PPM }, "", (ppm) => deeds.skew(this.port, ppm),
+      { name: "skew", title: "Clock too fast (ppm)", low: -MOST_SKEW_PPM, high: MOST_SKEW_PPM, help: "Parts per million: with 10,000 it runs one percent too fast" }, "", (ppm) => deeds.skew(this.port, ppm),
     );
     this.program = new Program(tiles, deeds.instruct);
     this.settings = new Settings(tiles, deeds.set, () => this.port);
@@ -110,7 +121,7 @@ export class Inspector {
     setText(this.guess, tile.powered ? `It shows ${look}${sure}` : awayWords(tile));
     setText(this.power, tile.powered ? "Power off" : "Power on");
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
-    this.freeze.title = this.tiles.source === "watched" ? "The tile keeps it, also without power, until Thaw" : "";
+    this.freeze.title = this.tiles.source === "watched" ? "The tile keeps it, also without power, until Thaw" : HELP.freeze;
     for (const one of [this.freeze, this.reset, this.press, this.blink]) one.disabled = !tile.powered;
     setText(this.turn, tile.turned ? "Turn back" : "Turn by 90°");
     showValue(this.clock.input, String(tile.skew));

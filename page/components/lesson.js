@@ -1,18 +1,20 @@
 // The lesson beside the board: one step at a time, done when the tiles say so.
 
-/** @import { Command, Place } from "../stream/source.js" */
+/** @import { Command, Model, Place } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
-import { STEPS, eight, preparation } from "../stream/lessons.js";
+import { LABEL, STEPS, eight, isReady, preparation } from "../stream/lessons.js";
 import { element, icon, setText } from "./dom.js";
 
 const ICON = "M12 4L2 9l10 5 10-5zM6 11.500V17c3 2.500 9 2.500 12 0v-5.500";
 const SPEED = 0.3;
+const DIGITS = "digits"; // the model for which it was written
 
 /**
  * @typedef {{
  *   send: (command: Command) => void,
  *   open: (cells: Place[], speed: number) => void,
  *   selected: () => string | null,
+ *   choose: (model: Model) => void,
  * }} LessonDeeds
  */
 
@@ -24,6 +26,10 @@ export class Lesson {
     this.deeds = deeds;
     this.at = -1;
     this.isDone = false;
+    /** Whether the step was there to do: nothing that was so before it began is its deed. */
+    this.isOpen = false;
+    /** What was looked into when the step began. @type {string | null} */
+    this.before = null;
     this.since = { runs: 0, frames: 0, selected: /** @type {string | null} */ (null) };
     this.count = element("p", { class: "summary" });
     this.title = element("h3", { tabindex: -1, class: "step-title" });
@@ -32,12 +38,16 @@ export class Lesson {
     this.done = element("p", { class: "done", role: "status" });
     this.back = element("button", { type: "button", onclick: () => this.go(this.at - 1) }, "Back");
     this.next = element("button", { type: "button", onclick: () => this.go(this.at + 1) }, "Skip");
+    this.use = element("button", { type: "button", class: "primary", hidden: true, onclick: () => {
+      const model = this.model();
+      if (model) this.deeds.choose(model);
+    } });
     this.dots = STEPS.map(() => element("li"));
     root.append(
       element("header", {}, element("h2", { id: "lesson-title" }, "Lesson"), this.count,
         element("button", { type: "button", class: "round plain", "aria-label": "End the lesson", onclick: () => this.end() }, "×")),
       element("ol", { class: "steps", "aria-hidden": "true" }, ...this.dots),
-      this.title, this.text, this.task, this.done,
+      this.title, this.text, this.use, this.task, this.done,
       element("div", { class: "deeds" }, this.back, this.next),
     );
     top.prepend(element(
@@ -50,29 +60,40 @@ export class Lesson {
   begin() {
     const wanted = new URLSearchParams(location.search).get("lesson");
     if (wanted === null || !this.tiles.can("arrange")) this.root.hidden = true;
-    else if (this.at < 0) this.go(Math.min(Math.max(Math.floor(Number(wanted)) || 1, 1), STEPS.length) - 1);
+    else this.go(this.at >= 0 ? this.at : Math.min(Math.max(Math.floor(Number(wanted)) || 1, 1), STEPS.length) - 1, true);
   }
 
-  /** @param {number} step */
-  go(step) {
+  /** The model that knows the digits, of those that one can choose. */
+  model() {
+    const { models } = this.tiles;
+    return models.find(({ name }) => name === DIGITS) ?? models.find(({ labels }) => labels.includes(LABEL));
+  }
+
+  /** @param {number} step @param {boolean} isNew whether the tiles are about to be others */
+  go(step, isNew = false) {
     if (step >= STEPS.length) return this.end();
     const cells = eight(this.tiles);
     this.root.hidden = false;
     this.at = Math.max(0, step);
     const { title, text, task } = STEPS[this.at];
     setText(this.title, title);
-    setText(this.text, cells.length ? text : "The lesson needs a model that knows the digits: choose it from the list below.");
+    setText(this.text, cells.length ? text : "The lesson needs a model that knows the digits.");
+    const model = cells.length ? undefined : this.model();
+    this.use.hidden = !model;
+    setText(this.use, model ? `Use ${model.name}` : "");
     setText(this.task, cells.length ? task : "");
     setText(this.count, `${this.at + 1} of ${STEPS.length}`);
     this.dots.forEach((dot, index) => dot.classList.toggle("on", index <= this.at));
     this.back.disabled = this.at === 0;
     this.show(false);
+    const commands = preparation(STEPS[this.at], this.tiles, isNew);
+    this.isOpen = false;
+    this.before = this.deeds.selected();
+    this.since = { runs: this.tiles.runs + (commands === null || isNew ? 1 : 0), frames: 0, selected: null };
     if (cells.length) {
-      const commands = preparation(STEPS[this.at], this.tiles);
       if (commands === null) this.deeds.open(cells, SPEED);
       else for (const command of [...commands, ...this.hurry()]) this.deeds.send(command);
     }
-    this.since = { runs: this.tiles.runs + (preparation(STEPS[this.at], this.tiles) === null ? 1 : 0), frames: 0, selected: null };
     this.note(String(this.at + 1));
     this.title.focus({ preventScroll: true });
     return undefined;
@@ -103,8 +124,13 @@ export class Lesson {
   update() {
     if (this.at < 0 || this.root.hidden) return;
     this.since.frames += this.tiles.pulses.length;
-    this.since.selected = this.deeds.selected();
-    if (!this.isDone && STEPS[this.at].isDone(this.tiles, this.since)) this.show(true);
+    const selected = this.deeds.selected();
+    if (selected !== this.before) this.before = null;
+    this.since.selected = this.before === null ? selected : null;
+    if (this.isDone || (!this.isOpen && !isReady(STEPS[this.at], this.tiles, this.since))) return;
+    const isDone = STEPS[this.at].isDone(this.tiles, this.since);
+    if (isDone && this.isOpen) this.show(true);
+    this.isOpen ||= !isDone;
   }
 
   /** @param {boolean} isDone */

@@ -5,7 +5,7 @@ import { element } from "./dom.js";
 
 /** @typedef {(name: string, value: number, port: string | null) => void} Set */
 
-/** @typedef {{name: string, title: string, low: number, high: number, step?: number}} Field */
+/** A number to set; the help is a sentence on it. @typedef {{name: string, title: string, low: number, high: number, step?: number, help?: string}} Field */
 
 /** Those that a hand may set; twin of SETTING_RANGES in host/tilenca/protocol/constants.py. @type {Field[]} */
 export const FIELDS = [
@@ -18,9 +18,9 @@ let count = 0;
  * A number with a button that sets it.
  * @param {Field} field @param {string} whose in words, after what is set @param {(value: number) => void} set
  */
-export function numberField({ name, title, low, high, step = 1 }, whose, set) {
+export function numberField({ name, title, low, high, step = 1, help = "" }, whose, set) {
   const id = `${name}-${count++}`;
-  const input = element("input", { type: "number", id, min: low, max: high, step, required: true, class: "number" });
+  const input = element("input", { type: "number", id, min: low, max: high, step, required: true, class: "number", title: help });
   const button = element("button", { type: "submit" }, "Set");
   button.append(element("span", { class: "visually-hidden" }, ` the ${title.toLowerCase().replace(/ \(.*\)/, "")}${whose}`));
   const form = element(
@@ -31,7 +31,7 @@ export function numberField({ name, title, low, high, step = 1 }, whose, set) {
         set(Number(input.value));
       },
     },
-    element("label", { for: id }, title), input, button,
+    element("label", { for: id, title: help }, title), input, button,
   );
   return { name, input, form };
 }

@@ -4,22 +4,24 @@
 /** @import { Recorder } from "../stream/recorder.js" */
 /** @import { StreamEvent } from "../stream/source.js" */
 import { parseRecording } from "../stream/recording_file.js";
-import { byId, element, icon } from "./dom.js";
+import { TOO_MUCH } from "../stream/run.js";
+import { byId, element, icon, setText } from "./dom.js";
 import { boardFilm } from "./film.js";
 import { boardPicture } from "./picture.js";
 
 const ICON = "M12 15V4M8 8l4-4 4 4M5 12v7h14v-7";
 const FILM_S = 5; // of the wall clock
 const JSON_LINES = "application/jsonl";
+const LOOPBACK = /^(localhost|.*\.localhost|127(\.\d+){3}|\[::1\])$/;
 // Twin of HOLE in host/tilenca/page/alone.py.
 const HOLE = "<!-- the recording -->";
 
 /**
  * @typedef {{
- *   link: () => string,
+ *   links: () => {now: string, history: string | null},
  *   words: () => string,
  *   lens: () => import("../stream/lens.js").Lens | null,
- *   say: (text: string) => void,
+ *   say: (text: string, stays?: boolean) => void,
  *   replay: (events: StreamEvent[], isCut: boolean) => void,
  *   compare: () => void,
  *   canAlone: () => boolean,
@@ -40,7 +42,18 @@ export class Share {
     this.recorder = recorder;
     this.deeds = deeds;
     this.dialog = /** @type {HTMLDialogElement} */ (byId("share"));
-    this.link = element("input", { type: "text", readonly: true, id: "share-link", "aria-label": "Link to this run until now" });
+    this.link = element("input", { type: "text", readonly: true, id: "share-link", "aria-label": "Link" });
+    this.links = { now: "", history: /** @type {string | null} */ (null) };
+    this.until = element("span", { class: "summary" });
+    /** @param {string} id @param {string} name @param {string | HTMLElement} help */
+    const choice = (id, name, help) => {
+      const input = element("input", { type: "radio", name: "share-what", id, onchange: () => this.showLink() });
+      return { input, label: element("label", { class: "choice", for: id }, input, element("span", {}, `${name}: `, help)) };
+    };
+    this.now = choice("share-now", "The board as it is now", element("span", { class: "summary" }, "begins when these tiles are switched on"));
+    this.history = choice("share-history", "How it came about", this.until);
+    this.here = element("p", { class: "summary" }, "Opens on this computer only; to send it, use Web page or a public copy of the page");
+    this.here.hidden = !LOOPBACK.test(location.hostname);
     this.file = element("input", {
       type: "file", accept: ".jsonl", id: "share-file", class: "visually-hidden", tabindex: -1, "aria-hidden": "true",
       onchange: () => this.open(),
@@ -55,7 +68,9 @@ export class Share {
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
-      element("div", { class: "row", "data-needs": "arrange" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")),
+      element("div", { class: "links-to-share", "data-needs": "arrange" },
+        element("fieldset", {}, element("legend", { class: "visually-hidden" }, "What the link opens"), this.now.label, this.history.label),
+        element("div", { class: "row" }, this.link, element("button", { type: "button", onclick: () => this.copy() }, "Copy")), this.here),
       row("Picture", "The board as it is now, as PNG", () => this.picture()),
       this.film,
       row("Record", "This run until now, as a file that the page replays", () => this.record()),
@@ -79,8 +94,16 @@ export class Share {
 
   show() {
     this.alone.hidden = !this.deeds.canAlone();
-    this.link.value = this.deeds.link();
+    this.links = this.deeds.links();
+    this.now.input.checked = true;
+    this.history.input.disabled = this.links.history === null;
+    setText(this.until, this.links.history === null ? TOO_MUCH : `all that was done, again, until ${this.tiles.time.toFixed(2)} s`);
     this.dialog.showModal();
+    this.showLink();
+  }
+
+  showLink() {
+    this.link.value = (this.history.input.checked && this.links.history) || this.links.now;
     this.link.select();
   }
 
@@ -121,11 +144,14 @@ export class Share {
     const from = Math.max(0, to - FILM_S * speed);
     const button = /** @type {HTMLButtonElement} */ (this.film.firstElementChild);
     button.disabled = true;
-    this.deeds.say("The GIF is being made.");
+    const span = `${from.toFixed(2)} to ${to.toFixed(2)} s`;
+    this.deeds.say(`The GIF of ${span} is being made.`, true);
     return this.attempt(async () => {
-      const film = await boardFilm(this.recorder.recording(), { from, to, seconds: (to - from) / speed }, this.deeds.lens());
-      download(film, `tilenca-${this.tiles.seed}-${to.toFixed(2)}s.gif`);
-      this.deeds.say(`The GIF has ${Math.ceil(film.size / 1000)} kB.`);
+      const film = await boardFilm(this.recorder.recording(), { from, to, seconds: (to - from) / speed }, this.deeds.lens(),
+        (left) => this.deeds.say(`The GIF of ${span} is being made: about ${Math.ceil(left)} s more.`, true));
+      const name = `tilenca-${this.tiles.seed}-${to.toFixed(2)}s.gif`;
+      download(film, name);
+      this.deeds.say(`The GIF of ${span} is saved as ${name}; it has ${Math.ceil(film.size / 1000)} kB.`);
     }).finally(() => {
       button.disabled = false;
       button.focus();
@@ -140,18 +166,19 @@ export class Share {
       const lines = this.recorder.text().replaceAll("<", "\\u003c");
       const script = `<script type="application/jsonl" id="recording">\n${lines}</script>`;
       const document = (await answer.text()).replace(HOLE, () => script);
-      download(new Blob([document], { type: "text/html" }), this.nameOf("html"));
-      this.tellFull();
+      this.save(new Blob([document], { type: "text/html" }), "html");
     });
   }
 
   record() {
-    download(new Blob([this.recorder.text()], { type: JSON_LINES }), this.nameOf("jsonl"));
-    this.tellFull();
+    this.save(new Blob([this.recorder.text()], { type: JSON_LINES }), "jsonl");
   }
 
-  tellFull() {
-    if (this.recorder.isFull) this.deeds.say("The recording is too long; it has the beginning only.");
+  /** Hands a recording over. @param {Blob} blob @param {string} kind the end of its name */
+  save(blob, kind) {
+    const name = this.nameOf(kind);
+    download(blob, name);
+    this.deeds.say(`It is saved as ${name}${this.recorder.isFull ? "; the recording is too long, and has the beginning only" : ""}.`);
   }
 
   async open() {

@@ -27,7 +27,7 @@ export class TileView {
     this.counter = svg("text", { x: 87, y: 91, class: "counter" });
     this.face = svg(
       "svg", { viewBox: "0 0 100 100", "aria-hidden": "true" },
-      unlit, this.glow, this.lit, ...this.lamps, this.id, this.counter,
+      svg("title", {}, new Text("Upper left: its number. Lower right: its updates, or what its colour tells")), unlit, this.glow, this.lit, ...this.lamps, this.id, this.counter,
     );
     this.mark = element("span", { class: "state-mark", "aria-hidden": "true" });
     this.button = element("button", { type: "button", class: "tile", tabindex: -1, "data-port": tile.port }, this.mark);

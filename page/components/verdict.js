@@ -40,7 +40,7 @@ export function verdictOn(tiles) {
     const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
     return { text: `${who} ${named(label)}${but}${away}`, label, agreed: true };
   }
-  const waiting = dark ? `, ${dark} ${dark === 1 ? "boots" : "boot"}` : "";
+  const waiting = dark ? `, ${dark} still ${dark === 1 ? "boots" : "boot"}` : "";
   return { text: `${most} of ${total} show ${named(label)}${waiting}${away}`, label, agreed: false };
 }
 

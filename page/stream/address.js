@@ -14,6 +14,7 @@ export const DEFAULT_SPEED = 0.1;
 const LEAST_SPEED = 1e-5;
 export const DEFAULT_SPREAD_S = 0.25;
 const FIRST_DRAWING = "8";
+const EMPTY = "0"; // an own drawing without tiles
 
 /** @param {string | null} text @param {number} low @param {number} high @param {number} otherwise */
 function numberIn(text, low, high, otherwise) {
@@ -33,9 +34,10 @@ export function readAddress(query, drawings) {
   const shape = drawings.find((one) => one.name === wanted) ??
     drawings.find((one) => one.label === FIRST_DRAWING) ?? drawings[0];
   const drawn = cellsOf((given.get("draw") ?? "").split("-"));
+  const isDrawn = drawn.length > 0 || given.get("draw") === EMPTY;
   const until = numberIn(given.get("until"), 0, 86400, NaN);
   return {
-    cells: drawn.length ? drawn : cellsOf(shape?.rows ?? ["#"]),
+    cells: isDrawn ? drawn : cellsOf(shape?.rows ?? ["#"]),
     seed: Math.floor(numberIn(given.get("seed"), 0, Number.MAX_SAFE_INTEGER, 0)),
     speed: Number(given.get("speed") || NaN) === 0 ? 0 : numberIn(given.get("speed"), LEAST_SPEED, 1024, DEFAULT_SPEED),
     faults: given.getAll("fault").slice(0, 32),
@@ -55,7 +57,7 @@ export function writeAddress(start, drawings) {
   const query = new URLSearchParams();
   const drawing = known(start.cells, drawings);
   if (drawing) query.set("shape", drawing.name);
-  else if (start.cells.length) query.set("draw", rowsOf(start.cells).join("-"));
+  else query.set("draw", start.cells.length ? rowsOf(start.cells).join("-") : EMPTY);
   query.set("seed", String(start.seed));
   query.set("speed", String(start.speed));
   for (const fault of start.faults) query.append("fault", fault);

@@ -60,6 +60,9 @@ const KINDS = {
   },
 };
 
+/** Whether a command changes what the tiles do from then on. @param {Command} command */
+export const isDeed = (command) => Object.hasOwn(KINDS, command.do);
+
 /** @param {Deed} deed */
 export function deedText({ time, deed }) {
   return [time, deed.do, ...KINDS[deed.do].write(deed)].join(",");

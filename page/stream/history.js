@@ -28,6 +28,13 @@ export class History {
     this.jumpedTo = -1;
   }
 
+  /** The changes of mind up to a time. @param {number} time */
+  changesUntil(time) {
+    let count = this.changeCount;
+    for (let i = this.changes.length - 1; i >= 0 && this.changes[i].time > time; i--) if (isOfMind(this.changes[i])) count--;
+    return count;
+  }
+
   /** Time has come to a moment; one can go to all those up to another. @param {number} time @param {number} [end] */
   pass(time, end) {
     if (end !== undefined && end < this.known) this.forget(end);

@@ -5,6 +5,7 @@ const GAMMA = 1.6;
 const PALENESS = 0.3;
 const PEAK = 0.94;
 const SHADE = 0.68;
+const CONTRAST = 3; // of a colour to the ground
 
 /** The authors' ten colours of classes, duty of 255. */
 export const PAPER_COLOURS = [
@@ -38,4 +39,20 @@ export function screenColour(duty) {
 /** The same for a style sheet. @param {number[]} duty */
 export function cssColour(duty) {
   return `rgb(${screenColour(duty).join(" ")})`;
+}
+
+/** How bright a colour is, of 0 to 1, as contrasts are reckoned (WCAG 2). @param {number[]} colour red, green, blue, 0..255 */
+function luminance(colour) {
+  const [red, green, blue] = colour.map((part) => (part <= 10 ? part / 3295 : ((part / 255 + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+/** A label's colour, as pale as it has to be to be seen on the dark ground. @param {number[]} duty @param {number[]} ground 0..255 each */
+export function seenColour(duty, ground) {
+  const colour = screenColour(duty);
+  const least = CONTRAST * (luminance(ground) + 0.05) - 0.05;
+  for (let share = 0; ; share += 0.05) {
+    const mixed = colour.map((part) => Math.round(part + (255 - part) * share));
+    if (luminance(mixed) >= least || share >= 1) return `rgb(${mixed.join(" ")})`;
+  }
 }

@@ -13,6 +13,7 @@ import { SIDES } from "./source.js";
  * How a step finds the board: whole (an 8 whose tiles all run), as it is, or some cells of it.
  * @typedef {{title: string, text: string, task: string, done: string, board: "whole" | "as it is" | "without one",
  *   isDone: (tiles: Tiles, since: Since) => boolean}} Step
+ * A step is done only after it was not done: what was so before it began is no deed.
  */
 
 export const LABEL = "8";
@@ -88,7 +89,7 @@ export const STEPS = [
     title: "And back again",
     text: "A tile that is plugged in begins from nothing. It asks nobody for the answer: the others send what they always send.",
     task: "Put the tile in again: click the empty place, or press Enter on it.",
-    done: "The newcomer made all others change their minds, because together they see an 8.",
+    done: "The newcomer and all others show an 8. Nobody told them: together they see it.",
     board: "without one",
     isDone: (tiles) => tiles.laid().length === 16 && agreement(tiles) === LABEL,
   },
@@ -98,7 +99,8 @@ export const STEPS = [
     task: "Look into any tile, and choose Power off.",
     done: "The rest agree on what is left. It may be another digit, if that looks more like it.",
     board: "whole",
-    isDone: (tiles) => tiles.laid().some((tile) => !tile.powered) && agreement(tiles) !== "",
+    isDone: (tiles) => tiles.laid().some((tile) => !tile.powered && tile.modelId !== "") && // it had power
+       agreement(tiles) !== "",
   },
   {
     title: "Two groups, two minds",
@@ -128,6 +130,12 @@ export function isWhole(tiles) {
     tiles.cut.size === 0 && laid.every((tile) => tile.powered && !tile.frozen);
 }
 
+/** Whether the board is as a step needs it, after its preparation. @param {Step} step @param {Tiles} tiles @param {Since} since */
+export function isReady(step, tiles, since) {
+  if (step.board === "without one") return tiles.laid().length === 15;
+  return step.board === "as it is" || tiles.runs >= since.runs;
+}
+
 /** The places of the 8. @param {Tiles} tiles @returns {Place[]} */
 export function eight(tiles) {
   const drawing = tiles.drawings.find(({ label, rows }) => label === LABEL && cellsOf(rows).length === 16);
@@ -137,11 +145,12 @@ export function eight(tiles) {
 /**
  * What makes the board as a step needs it; null where it has to begin anew.
  * @param {Step} step @param {Tiles} tiles
+ * @param {boolean} isNew whether the tiles are about to be others
  * @returns {Command[] | null}
  */
-export function preparation(step, tiles) {
+export function preparation(step, tiles, isNew = false) {
   if (step.board === "as it is") return [];
-  if (step.board === "whole") return isWhole(tiles) ? [] : null;
-  if (tiles.laid().length === 15) return [];
+  if (step.board === "whole") return isWhole(tiles) && !isNew ? [] : null;
+  if (tiles.laid().length === 15 && !isNew) return [];
   return [{ do: "arrange", cells: eight(tiles).filter(([row, col]) => row !== PULLED[0] || col !== PULLED[1]) }];
 }

@@ -122,6 +122,7 @@ def test_clusters_go_by_keyboard_and_into_the_link(two_bars: Visit) -> None:
     page.get_by_role("button", name="Pause").click()
     page.get_by_role("button", name="Go on").wait_for()
     page.get_by_role("button", name="Share").click()
+    page.get_by_label("How it came about").check()
     link = page.input_value("#share-link")
     assert ",shift,4-5-6,1,0&" in link
     assert ",shift,4,0,-1" in link

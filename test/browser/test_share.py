@@ -54,6 +54,7 @@ def test_a_picture_is_a_png_of_the_board(shared: Visit, tmp_path: Path) -> None:
 
 def test_a_recording_is_replayed_forwards_and_backwards(shared: Visit, tmp_path: Path) -> None:
     path = saved(shared, "Record", tmp_path)
+    shared.page.locator("#notice", has_text=f"It is saved as {path.name}").wait_for()
     events = [json.loads(line) for line in path.read_text().splitlines()]
     assert [next(key for key in event if key in KINDS) for event in events[:2]] == ["stream", "run"]
     times = [event["time"] for event in events]
@@ -94,6 +95,7 @@ def test_a_recording_that_was_cut_off_is_replayed_as_far_as_it_is_whole(
 def test_a_gif_shows_the_last_seconds(shared: Visit, tmp_path: Path) -> None:
     """From the agreement on 8 to that on 9, in the colours of the page, with its last frame for a while."""
     path = saved(shared, "GIF", tmp_path)
+    shared.page.locator("#notice", has_text=f"s is saved as {path.name}").wait_for()
     film = Image.open(path)
     assert film.format == "GIF"
     assert film.size == (round((4 * 120 + 96) * 64 / 120), round((5 * 120 + 96 + 44) * 64 / 120))
@@ -231,6 +233,7 @@ def test_the_link_is_the_run_with_all_that_hands_did(shared: Visit, tmp_path: Pa
     before = page.evaluate(told)
     clock = page.inner_text("#clock")
     page.get_by_role("button", name="Share").click()
+    page.get_by_label("How it came about").check()
     link = page.input_value("#share-link")
     assert "shape=digits/8" in link
     assert re.findall(r"deed=[\d.]+,(\w+),([^&]+)", link) == [("pull", "11"), ("freeze", "2,1")]
