@@ -72,7 +72,7 @@ export class Bar {
     }
     this.playIcon = icon(ICONS.pause);
     this.play = element(
-      "button", { type: "button", class: "round", title: "Pause or go on (P, or Space where no button is marked)", "aria-label": "Pause", onclick: () => this.toggle() },
+      "button", { type: "button", class: "round", title: "Pause or go on (P, or Space unless the keyboard is on a button)", "aria-label": "Pause", onclick: () => this.toggle() },
       this.playIcon,
     );
     this.stepButton = element(

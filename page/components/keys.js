@@ -4,8 +4,9 @@
 /** @import { LensPanel } from "./lens.js" */
 
 const TYPED_IN = "input:not([type=range], [type=file]), select, textarea, [contenteditable]";
-/** What the space key works by itself, where the keyboard has led to it: then it is marked. */
-const PRESSED = ":is(button, summary, input):focus-visible";
+/** What the space key works by itself, where the keyboard has led to it, and not a pointer. */
+const PRESSED = "button, summary, input";
+const LEADING = /^(Tab|Arrow.*)$/;
 
 /** @typedef {BarDeeds & {undo: () => void}} KeyDeeds */
 
@@ -34,10 +35,13 @@ export function listenToKeys(bar, deeds, lens, instruct, help) {
     p: () => bar.toggle(),
     "?": help,
   };
+  let isLed = true;
+  document.addEventListener("pointerdown", () => (isLed = false), true);
+  document.addEventListener("keydown", ({ key }) => (isLed ||= LEADING.test(key)), true);
   document.addEventListener("keydown", (event) => {
     if (event.altKey || event.defaultPrevented || document.querySelector("dialog[open]")) return;
     const target = /** @type {HTMLElement} */ (event.target);
-    if (target.closest(TYPED_IN) || (event.key === " " && target.closest(PRESSED))) return;
+    if (target.closest(TYPED_IN) || (event.key === " " && isLed && target.closest(PRESSED))) return;
     const isUndo = event.key === "z" && !event.shiftKey;
     const act = event.ctrlKey || event.metaKey ? isUndo && deeds.undo : keys[event.key];
     if (!act) return;
