@@ -9,6 +9,7 @@ import { bring, byId } from "./components/dom.js";
 import { obeyParent, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
+import { Help } from "./components/help.js";
 import { Hint } from "./components/hint.js";
 import { Inspector } from "./components/inspector.js";
 import { listenToKeys } from "./components/keys.js";
@@ -31,6 +32,11 @@ import { Run } from "./stream/run.js";
 import { openServer } from "./stream/socket.js";
 import { surprise } from "./stream/surprise.js";
 import { Tiles } from "./stream/tiles.js";
+
+// A little before a deed: more than the emulator's quantum of time, and less than a tile needs for anything.
+const MOMENT_S = 1e-4;
+/** @param {number} time */
+const undone = (time) => `Back to just before what hands did at ${time.toFixed(2)} s. Go on, and it happens again; do something else, and it never was.`;
 
 export const tiles = new Tiles();
 const recorder = new Recorder();
@@ -70,7 +76,10 @@ const deeds = {
   /** @param {string} port @param {Place} place */
   move: (port, [row, col]) => send({ do: "move", port, row, col }),
   /** @param {import("./stream/groups.js").Shift} shift */
-  shift: (shift) => send({ do: "shift", ...shift }),
+  shift(shift) {
+    send({ do: "shift", ...shift });
+    if (shift.ports.length === tiles.byPlace.size) notice.say("All tiles have moved together: that is the same shape, and the board stays around it.");
+  },
   /** @param {string} port @param {string} side @param {boolean} on */
   cut: (port, side, on) => send({ do: "cut", port, side, on }),
   /** @param {string} port @param {boolean} on */
@@ -98,7 +107,23 @@ const deeds = {
   },
   /** @param {number} speed @param {boolean} paused */
   pace: (speed, paused) => send({ do: "pace", speed, paused }),
-  step: () => send({ do: "step", seconds: tiles.stepS }),
+  /** One update; a run that goes on stands then. */
+  step() {
+    if (!tiles.pace.paused) deeds.pace(tiles.pace.speed, true);
+    send({ do: "step", seconds: tiles.stepS });
+  },
+  /** To just before the last deed until now; it happens again, unless a hand does something else. */
+  undo() {
+    const last = tiles.deeds.findLast(({ time }) => time <= tiles.time + MOMENT_S);
+    if (tiles.end === null) {
+      notice.say("Time does not go back here: undo it by hand.");
+    } else if (!last || last.time <= MOMENT_S) {
+      notice.say("There is nothing to take back.");
+    } else {
+      timeline.go(last.time - MOMENT_S);
+      notice.say(undone(last.time));
+    }
+  },
   /** One update back. */
   back: () => {
     if (tiles.end !== null) timeline.go(timeline.aim - tiles.stepS);
@@ -165,7 +190,8 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
     source = (wanted ?? open)(listener);
   },
 });
-listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1));
+const help = new Help(byId("top-deeds"));
+listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1), () => help.show());
 obeyParent(deeds);
 // Only the board and time, for a lesson or an article.
 document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));

@@ -72,11 +72,11 @@ export class Bar {
     }
     this.playIcon = icon(ICONS.pause);
     this.play = element(
-      "button", { type: "button", class: "round", title: "Pause or go on (space)", "aria-label": "Pause", onclick: () => this.toggle() },
+      "button", { type: "button", class: "round", title: "Pause or go on (P, or Space unless the keyboard is on a button)", "aria-label": "Pause", onclick: () => this.toggle() },
       this.playIcon,
     );
     this.stepButton = element(
-      "button", { type: "button", class: "round", title: "One update (.)", "aria-label": "One update", onclick: () => deeds.step() },
+      "button", { type: "button", class: "round", title: "One update, then stand (.)", "aria-label": "One update", onclick: () => deeds.step() },
       icon(ICONS.step),
     );
     this.slider = element("input", {
@@ -132,7 +132,6 @@ export class Bar {
     if (this.play.getAttribute("aria-label") !== name) {
       this.play.setAttribute("aria-label", name);
       this.playIcon.firstElementChild?.setAttribute("d", paused ? ICONS.play : ICONS.pause);
-      this.stepButton.disabled = !paused;
     }
     if (document.activeElement !== this.slider) this.slider.value = String(nearest(speed));
     // A machine that cannot keep up says what share of the speed it reaches.

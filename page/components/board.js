@@ -38,6 +38,9 @@ export class Board {
     this.at = [0, 0];
     /** Ports of the tiles in the hand. @type {string[]} */
     this.lifted = [];
+    this.isAwake = false;
+    /** Whether the view was chosen for one who draws. */
+    this.isDrawing = false;
     this.hands = new Hands(root, tiles, this.view, {
       ...deeds,
       lift: (ports, dx, dy, place) => this.lift(ports, dx, dy, place),
@@ -45,6 +48,7 @@ export class Board {
       stroke: (points) => {
         this.cables.stroke = points;
         this.cables.isStale = true;
+        this.wake();
       },
     });
     root.append(...this.cables.canvases);
@@ -54,9 +58,19 @@ export class Board {
     new ResizeObserver(() => this.arrange()).observe(root);
   }
 
+  /** Shows with the next frame what a hand has changed: a source tells nothing while time stands. */
+  wake() {
+    if (this.isAwake) return;
+    this.isAwake = true;
+    requestAnimationFrame((now) => {
+      this.isAwake = false;
+      this.update(now);
+    });
+  }
+
   /** Shows what is new; once for every frame. @param {number} now */
   update(now) {
-    if (this.tiles.isMoved && !this.hands.grip?.moved) {
+    if (this.tiles.isMoved && (!this.hands.grip?.moved || this.hands.tool === "pencil")) {
       this.tiles.isMoved = false;
       this.arrange();
     }
@@ -74,13 +88,16 @@ export class Board {
   select(port) {
     for (const one of [this.selected, port]) if (one) this.tiles.dirty.add(one);
     this.selected = port;
+    this.wake();
   }
 
   /** @param {import("./hands.js").Tool} tool */
   choose(tool) {
     this.hands.tool = tool;
     this.root.dataset.tool = tool;
+    this.isDrawing = false;
     this.tiles.isMoved = true; // who draws has more room
+    this.wake();
   }
 
   /** Looks at the tiles in another way. @param {Lens | null} lens */
@@ -95,10 +112,15 @@ export class Board {
     const hadFocus = this.root.contains(document.activeElement);
     const { clientWidth: width, clientHeight: height } = this.root;
     const laid = this.tiles.laid();
-    const drawn = this.hands.tool === "pencil" ? this.view.ends() : []; // what was in reach stays there
-    this.view.fit([...laid.map((tile) => tile.place), ...drawn], width, height);
+    const places = laid.map((tile) => tile.place);
+    // Who draws finds each place where it was, until the tool changes or something lies out of reach.
+    const isDrawing = this.isDrawing && (laid.length > 0 || this.hands.grip !== null);
+    if (!isDrawing || !this.view.shows(places, width, height)) {
+      this.view.fit([...places, ...(isDrawing ? this.view.ends() : [])], width, height);
+    }
+    this.isDrawing = this.view.isWide = this.hands.tool === "pencil";
     this.root.style.setProperty("--size", `${this.view.size}px`);
-    this.root.classList.toggle("small", this.view.size < 62);
+    this.root.classList.toggle("small", this.view.size < 58);
     this.cables.resize(width, height);
     const gone = new Set(this.views.keys());
     for (const tile of laid) {
@@ -158,15 +180,19 @@ export class Board {
   lift(ports, dx, dy, place) {
     if (!this.lifted.length) this.cables.flights = [];
     this.lifted = ports;
+    this.wake();
+    const held = this.tiles.laid().filter((tile) => ports.includes(tile.port));
+    [dx, dy] = this.view.inWindow(held.map((tile) => tile.place), [dx, dy], this.root.getBoundingClientRect());
     this.cables.lift(ports, dx, dy);
     for (const port of ports) {
       const button = this.views.get(port)?.button;
       button?.classList.add("lifted");
       button?.style.setProperty("translate", `${dx}px ${dy}px`);
     }
+    this.root.classList.add("holding");
+    this.root.classList.toggle("out", place === null);
     const what = ports.length > 1 ? "them" : "it";
     byId("box").hidden = false;
-    byId("box").classList.toggle("over", place === null);
     setText(byId("box"), place ? `Drag ${what} off the board to take ${what} out` : `Let go to take ${what} out`);
     for (const [key, spot] of this.spots) spot.classList.toggle("aim", ports.length === 1 && key === place?.join());
   }
@@ -179,6 +205,7 @@ export class Board {
       button?.style.removeProperty("translate");
     }
     this.lifted = [];
+    this.root.classList.remove("holding", "out");
     this.cables.lift([], 0, 0);
     byId("box").hidden = true;
     for (const spot of this.spots.values()) spot.classList.remove("aim");
@@ -249,9 +276,9 @@ export class Board {
 
   /** Makes Tab lead to a place, or to the nearest one in view. @param {Place} place @param {boolean} [focus] */
   rove(place, focus = false) {
-    const { view } = this;
-    const row = Math.max(view.top - 1, Math.min(view.top + view.rows, place[0]));
-    const col = Math.max(view.left - 1, Math.min(view.left + view.cols, place[1]));
+    const [[top, left], [bottom, right]] = this.view.reach();
+    const row = Math.max(top, Math.min(bottom, place[0]));
+    const col = Math.max(left, Math.min(right, place[1]));
     for (const button of this.root.querySelectorAll("button[tabindex='0']")) button.setAttribute("tabindex", "-1");
     this.at = [row, col];
     const button = this.buttonAt(this.at) ?? this.views.values().next().value?.button;

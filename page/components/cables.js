@@ -136,12 +136,19 @@ export class Cables {
           pen.stroke();
         }
         if (isCut) {
-          pen.lineWidth = Math.max(2, view.size * 0.03);
+          // A cross that is seen from afar, with a rim that parts it from the tiles.
+          const far = Math.max(6, view.size * 0.1);
           pen.lineCap = "round";
-          pen.beginPath();
-          pen.moveTo(-gap * 0.5, width * 0.75);
-          pen.lineTo(gap * 0.5, -width * 0.75);
-          pen.stroke();
+          for (const [colour, wide] of /** @type {[string, number][]} */ ([["--raised", 0.09], [TOKENS.cut, 0.045]])) {
+            pen.strokeStyle = style.getPropertyValue(colour);
+            pen.lineWidth = Math.max(50 * wide, view.size * wide);
+            pen.beginPath();
+            pen.moveTo(-far, far);
+            pen.lineTo(far, -far);
+            pen.moveTo(-far, -far);
+            pen.lineTo(far, far);
+            pen.stroke();
+          }
         }
         pen.restore();
       }

@@ -8,10 +8,12 @@ import { setText } from "./dom.js";
 const WORDS = {
   hand: "Drag a tile off the board",
   group: "Drag all that hangs together",
-  pencil: "Drag to put tiles in, or to rub out",
+  pencil: "Start on an empty place to put tiles in, on a tile to rub out",
   knife: "Drag across cables; click one to mend",
 };
 const EMPTY = "Click free places, or choose Draw";
+// A tool with two ways is known when both were gone.
+const BOTH = ["put", "pull"];
 const DEEDS = ["put", "pull", "move", "shift", "cut"];
 
 export class Hint {
@@ -23,17 +25,23 @@ export class Hint {
     this.tool = "hand";
     /** Tools that a hand has used. @type {Set<Tool>} */
     this.known = new Set();
+    /** What the pencil has done. @type {Set<string>} */
+    this.drawn = new Set();
   }
 
   /** @param {Tool} tool */
   choose(tool) {
+    if (tool !== this.tool && this.drawn.size) this.known.add("pencil");
+    this.drawn.clear();
     this.tool = tool;
     this.update();
   }
 
   /** A hand does something. @param {string} deed */
   note(deed) {
-    if (DEEDS.includes(deed)) this.known.add(this.tool);
+    if (this.tool === "pencil" && BOTH.includes(deed)) this.drawn.add(deed);
+    const isKnown = this.tool === "pencil" ? this.drawn.size === BOTH.length : DEEDS.includes(deed);
+    if (isKnown) this.known.add(this.tool);
     this.update();
   }
 

@@ -4,16 +4,20 @@
 /** @import { LensPanel } from "./lens.js" */
 
 const TYPED_IN = "input:not([type=range], [type=file]), select, textarea, [contenteditable]";
-/** What the space key works by itself. */
+/** What the space key works by itself, where the keyboard has led to it, and not a pointer. */
 const PRESSED = "button, summary, input";
+const LEADING = /^(Tab|Arrow.*)$/;
+
+/** @typedef {BarDeeds & {undo: () => void}} KeyDeeds */
 
 /**
  * @param {Bar} bar
- * @param {BarDeeds} deeds
+ * @param {KeyDeeds} deeds
  * @param {LensPanel} lens
  * @param {() => void} instruct one instruction of the tile that is looked into
+ * @param {() => void} help shows the list of keys
  */
-export function listenToKeys(bar, deeds, lens, instruct) {
+export function listenToKeys(bar, deeds, lens, instruct, help) {
   /** @type {Record<string, () => void>} */
   const keys = {
     h: () => bar.choose("hand"),
@@ -28,13 +32,18 @@ export function listenToKeys(bar, deeds, lens, instruct) {
     ".": () => deeds.step(),
     ",": () => deeds.back(),
     " ": () => bar.toggle(),
+    p: () => bar.toggle(),
+    "?": help,
   };
+  let isLed = true;
+  document.addEventListener("pointerdown", () => (isLed = false), true);
+  document.addEventListener("keydown", ({ key }) => (isLed ||= LEADING.test(key)), true);
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-    if (document.querySelector("dialog[open]")) return;
+    if (event.altKey || event.defaultPrevented || document.querySelector("dialog[open]")) return;
     const target = /** @type {HTMLElement} */ (event.target);
-    if (target.closest(TYPED_IN) || (event.key === " " && target.closest(PRESSED))) return;
-    const act = keys[event.key];
+    if (target.closest(TYPED_IN) || (event.key === " " && isLed && target.closest(PRESSED))) return;
+    const isUndo = event.key === "z" && !event.shiftKey;
+    const act = event.ctrlKey || event.metaKey ? isUndo && deeds.undo : keys[event.key];
     if (!act) return;
     act();
     event.preventDefault();

@@ -2,8 +2,9 @@
 
 /** @import { Place } from "../stream/source.js" */
 
-// Around the tiles: room to put one.
-const MARGIN = 0.62;
+// Around the tiles: room to put one, which is seen whole but for a hair of its edge.
+const MARGIN = 0.95;
+const HAIR = 0.1;
 const MARGIN_PX = 36; // and for a line of text
 const LARGEST = 132;
 const SMALLEST = 26;
@@ -19,6 +20,10 @@ export class View {
     this.y = 0;
     this.rows = 1;
     this.cols = 1;
+    this.width = 0;
+    this.height = 0;
+    /** Whether all places that the box has room for are in reach, not only those beside the tiles. */
+    this.isWide = false;
   }
 
   /**
@@ -26,6 +31,8 @@ export class View {
    * @param {Place[]} places @param {number} width @param {number} height
    */
   fit(places, width, height) {
+    this.width = width;
+    this.height = height;
     const rows = places.map(([row]) => row);
     const cols = places.map(([, col]) => col);
     this.top = places.length ? Math.min(...rows) : 0;
@@ -39,6 +46,22 @@ export class View {
     this.size = Math.floor(Math.max(SMALLEST, Math.min(LARGEST, fitting)));
     this.x = Math.round((width - this.cols * this.size) / 2);
     this.y = Math.round((height - this.rows * this.size) / 2);
+  }
+
+  /** Whether places are in reach, and the box is as it was. @param {Place[]} places @param {number} width @param {number} height */
+  shows(places, width, height) {
+    const [[top, left], [bottom, right]] = this.reach();
+    return width === this.width && height === this.height &&
+      places.every(([row, col]) => row >= top && row <= bottom && col >= left && col <= right);
+  }
+
+  /** Opposite corners of the places in reach: the tiles' box and one more all around, or as many as there is room for. @returns {[Place, Place]} */
+  reach() {
+    /** @param {number} start @param {number} end */
+    const room = (start, end) => [start, end].map((one) => (this.isWide ? Math.max(1, Math.floor(one / this.size + HAIR)) : 1));
+    const [above, below] = room(this.y, this.height - this.y - this.rows * this.size);
+    const [before, after] = room(this.x, this.width - this.x - this.cols * this.size);
+    return [[this.top - above, this.left - before], [this.top + this.rows - 1 + below, this.left + this.cols - 1 + after]];
   }
 
   /** Opposite corners of what was fitted last. @returns {Place[]} */
@@ -62,12 +85,29 @@ export class View {
     return [Math.floor((y - this.y) / this.size) + this.top, Math.floor((x - this.x) / this.size) + this.left];
   }
 
-  /** Empty and other places in view: the tiles' box and one more all around. @returns {Place[]} */
+  /**
+   * How far places in the hand are shown to be carried: never out of the window.
+   * @param {Place[]} places @param {[number, number]} by in pixels @param {{left: number, top: number}} board in the window
+   * @returns {[number, number]}
+   */
+  inWindow(places, [dx, dy], { left, top }) {
+    const corners = places.map((place) => this.corner(...place));
+    /** @param {number} way @param {0 | 1} axis @param {number} start of the board @param {number} end of the window */
+    const kept = (way, axis, start, end) => {
+      const at = corners.map((corner) => corner[axis] + start);
+      return Math.max(Math.min(0, -Math.min(...at)), Math.min(Math.max(0, end - this.size - Math.max(...at)), way));
+    };
+    const { clientWidth, clientHeight } = document.documentElement;
+    return [kept(dx, 0, left, clientWidth), kept(dy, 1, top, clientHeight)];
+  }
+
+  /** Empty and other places in reach. @returns {Place[]} */
   places() {
     /** @type {Place[]} */
     const all = [];
-    for (let row = this.top - 1; row <= this.top + this.rows; row++) {
-      for (let col = this.left - 1; col <= this.left + this.cols; col++) all.push([row, col]);
+    const [[top, left], [bottom, right]] = this.reach();
+    for (let row = top; row <= bottom; row++) {
+      for (let col = left; col <= right; col++) all.push([row, col]);
     }
     return all;
   }

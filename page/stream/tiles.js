@@ -150,7 +150,10 @@ export class Tiles {
     if (event.place !== undefined) {
       if (event.tile !== undefined) tile.number = event.tile;
       this.lay(tile, event.place);
-      if (!event.place) this.show(tile, event.time, "");
+      if (!event.place) {
+        this.show(tile, event.time, "");
+        forget(tile);
+      }
     } else if (event.open !== undefined) {
       tile.powered = event.open;
       tile.reason = event.reason ?? "";

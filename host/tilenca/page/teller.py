@@ -62,7 +62,7 @@ class Teller:
         self._voices: Said = []
 
     def places(self) -> list[StreamEvent]:
-        """What lies where, has power, and is joined, as far as it is news."""
+        """What lies where, has power, shines and is joined, as far as it is news."""
         events: list[StreamEvent] = []
         now_s = self._array.time_s
         while len(self._seen) < len(self._array):
@@ -80,6 +80,10 @@ class Teller:
             if (fault := self._board.fault_of(tile.index)) != seen.fault:
                 seen.fault = fault
                 events.append(fault_event(now_s, port, *fault))
+            leds = "".join(name if lit else "-" for name, lit in zip(SIDES, tile.leds, strict=True))
+            if (display := (tile.segments, tile.rgb, leds)) != seen.display:
+                seen.display = display
+                events.append(display_event(now_s, port, *display))
         cut = self._board.cut
         for link in sorted(cut ^ self._seen_cut):
             events.append(cable_event(now_s, port_name(link[0]), SIDES[link[1]], link not in cut))
@@ -88,7 +92,6 @@ class Teller:
 
     def look(self, frames: bool) -> list[StreamEvent]:
         """All that is news; with `frames`, the frames on the cables, too."""
-        now_s = self._array.time_s
         events = self.places()
         passed = self._board.traffic.read()
         if frames:
@@ -96,14 +99,7 @@ class Teller:
                 frame_event(frame.time_s, port_name(frame.tile), SIDES[frame.side], frame.data)
                 for frame in passed
             ]
-        events += self._lines()
-        for tile, seen in zip(self._array, self._seen, strict=True):
-            leds = "".join(name if lit else "-" for name, lit in zip(SIDES, tile.leds, strict=True))
-            display = tile.segments, tile.rgb, leds
-            if display != seen.display:
-                seen.display = display
-                events.append(display_event(now_s, port_name(tile.index), *display))
-        return events
+        return events + self._lines()
 
     def _lines(self) -> list[StreamEvent]:
         said = []

@@ -39,7 +39,7 @@ export class Teller {
     this.board = board;
   }
 
-  /** What lies where, has power, and is joined, as far as it is news. */
+  /** What lies where, has power, shines and is joined, as far as it is news. */
   places() {
     const { array, places, cut, faults } = this.board;
     const now = array.timeS;
@@ -62,6 +62,13 @@ export class Teller {
         seen.fault = JSON.stringify(fault);
         events.push(event(now, { port, fault }));
       }
+      const tile = array.tile(index);
+      const leds = [...SIDES].map((name, side) => ((tile.leds >> side) & 1 ? name : "-")).join("");
+      const display = { segments: tile.segments, rgb: [...tile.rgb], leds };
+      if (JSON.stringify(display) !== seen.display) {
+        seen.display = JSON.stringify(display);
+        events.push(event(now, { port, display }));
+      }
     });
     const [before, after] = [this.#cut, cut].map((links) => new Set(links.map(String)));
     const news = [...this.#cut, ...cut].filter((link) => before.has(String(link)) !== after.has(String(link)));
@@ -75,22 +82,13 @@ export class Teller {
 
   /** All that is news; with `frames`, the frames on the cables, too. @param {boolean} frames */
   look(frames) {
-    const { array, traffic } = this.board;
-    const now = array.timeS;
+    const { traffic } = this.board;
     const events = this.places();
     const passed = traffic.read();
     for (const { timeS, tile, side, data } of frames ? passed : []) {
       events.push(event(timeS, { port: portName(tile), side: SIDES[side], frame: data }));
     }
     events.push(...this.#lines());
-    this.#seen.forEach((seen, index) => {
-      const tile = array.tile(index);
-      const leds = [...SIDES].map((name, side) => ((tile.leds >> side) & 1 ? name : "-")).join("");
-      const display = { segments: tile.segments, rgb: [...tile.rgb], leds };
-      if (JSON.stringify(display) === seen.display) return;
-      seen.display = JSON.stringify(display);
-      events.push(event(now, { port: portName(index), display }));
-    });
     return events;
   }
 
