@@ -200,7 +200,9 @@ def test_shapes_the_firmware_was_not_trained_on_name_the_model_and_the_remedy(
         capsys, "--shapes", row, "--seconds", "1.5", "--boot-spread", "0", "--bootloader", "none"
     )
     assert status == 1
-    assert re.search("1: WRONG, . of 3 tiles show 1, .* with model [0-9A-F]{4}; -v lists them", out)
+    assert re.search(
+        "1: WRONG, . of 3 tiles show 1, .*; model [0-9A-F]{4} is models/digits; -v lists them", out
+    )
     assert "is not for" not in err, "the model knows the label"
     assert err.count("takes these for something else; put these drawings, with their labels, into ") == 1
     assert f"model {load_model(paths.DEFAULT_MODEL).model_id:04X} was made of digits.toml" in err

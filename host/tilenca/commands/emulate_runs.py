@@ -14,6 +14,7 @@ from typing import Any
 
 from rich.console import Console
 
+from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.emulate_states import StateCheck
 from tilenca.commands.origin import why_wrong
@@ -74,7 +75,7 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
     if args.others and args.own_model is not None and not args.foreign:
         notes.append(_of_one_run(args, task))
     report = emulation.report(time.monotonic() - started) | {"verdict": judged}
-    words = verdict(emulation, expected, args.verbose)
+    words = verdict(emulation, expected, args.verbose, args.own_folder and place_of(args.own_folder))
     return EmulationResult(report, take_picture(emulation), words, tuple(notes))
 
 
