@@ -39,7 +39,7 @@ def work_of(engine: Engine, suite: Suite, runs: int) -> Work:
 def rows_during_training(engine: Engine, suite: Suite) -> int:
     """How many rows the short measurements during training have, see `Evaluator.short_rows`."""
     rows = sum(1 for _ in _Workload(engine, suite, runs=1, seed=0).short_rows())
-    return rows + sum(len(each.rows) for each in suite.missing)
+    return rows + len(suite.dead) + sum(len(each.rows) for each in suite.missing)
 
 
 class _Workload(Evaluator):
