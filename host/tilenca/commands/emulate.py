@@ -135,7 +135,8 @@ def _prepare(args: argparse.Namespace) -> _Run:
         told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
     else:
         told = _foreign(hello, known and known[0], task)
-    args.foreign, args.own_model, args.own_folder = bool(told), *(known or (None, None))
+    args.foreign = bool(told)
+    args.own_model, args.own_folder = known or (None, None)
     own = own_drawings(*known, task) if known else {shape.name for shape in task.shapes}
     args.others = {shape.name for shape in shapes if shape.name.partition(" ")[0] not in own}
     for note in told:
