@@ -267,10 +267,10 @@ def _rows(where: str, grid_where: str, grid_line: int, label: str, grid: object)
     if not cells:
         raise UsageError(f"{grid_where}: shape '{label}' has no tile; draw at least one '#'")
     if not connected(cells):
-        row, column = apart(cells)
+        lost_row, lost_column = apart(cells)
         raise UsageError(
-            f"{grid_where}: shape '{label}' is not connected: the tile in row {row + 1}, column {column + 1} "
-            "is apart; tiles must touch by their sides"
+            f"{grid_where}: shape '{label}' is not connected: the tile in row {lost_row + 1}, "
+            f"column {lost_column + 1} is apart; tiles must touch by their sides"
         )
     top, bottom = cells[0][0], cells[-1][0]
     left, right = min(c for _, c in cells), max(c for _, c in cells)
