@@ -22,6 +22,7 @@ from tilenca.emulator.greeting import greeting
 from tilenca.fleet.image import firmware_id, parse_hex
 from tilenca.fleet.recording import read_recording
 from tilenca.model.file import load_model
+from tilenca.shapes.file import load_task, shape_table
 
 
 @pytest.fixture(autouse=True)
@@ -199,10 +200,25 @@ def test_shapes_the_firmware_was_not_trained_on_name_the_model_and_the_remedy(
         capsys, "--shapes", row, "--seconds", "1.5", "--boot-spread", "0", "--bootloader", "none"
     )
     assert status == 1
-    assert re.search("1: WRONG, . of 3 tiles show 1, .* with model [0-9A-F]{4}; -v lists them", out)
+    assert re.search(
+        "1: WRONG, . of 3 tiles show 1, .*; model [0-9A-F]{4} is models/digits; -v lists them", out
+    )
     assert "is not for" not in err, "the model knows the label"
-    assert err.count(f"takes these for something else; one of these: tilenca make {row}; more reasons: ") == 1
+    assert err.count("takes these for something else; put these drawings, with their labels, into ") == 1
     assert f"model {load_model(paths.DEFAULT_MODEL).model_id:04X} was made of digits.toml" in err
+
+
+def test_a_drawing_that_the_model_was_not_made_of_has_all_its_updates_and_is_told_as_one_run(
+    capsys: pytest.CaptureFixture[str], row: Path
+) -> None:
+    quick = ("--bootloader", "none", "--boot-spread", "0", "--json")
+    row.write_text(row.read_text() + shape_table("1", load_task(paths.DEFAULT_SHAPES).find("1").rows))
+    _, out, err = emulate(capsys, "--shapes", row, *quick)
+    altered, own = json.loads(out)["runs"]
+    assert all(tile["updates"] >= 60 for tile in altered["tiles"])
+    assert min(tile["updates"] for tile in own["tiles"]) < 60, "the model was made of this one"
+    assert "note: the model was not made of 1: this is one run of one seed; more: tilenca simulate" in err
+    assert err.count(f"--shapes {row} --shape 1 --runs 100") == 1
 
 
 def test_a_file_with_classes_that_the_firmware_lacks_is_told_at_once(

@@ -68,8 +68,26 @@ def test_a_pulled_tile_is_out_until_it_is_put_back_and_one_stays(hands: Hands) -
     assert hands.emulation.all_right, "they agree again, over mended cables"
 
 
-def test_other_keys_do_nothing(hands: Hands) -> None:
-    before = vars(hands).copy()
+def test_a_tile_of_a_number_is_pulled_and_the_keys_answer(hands: Hands) -> None:
+    for key in "3p":
+        hands.obey(key)
+    assert hands.out == [2]
+    for key, said in (
+        ("9", "tile 9: p pulls it"),
+        ("p", "no tile 9 with power to pull"),
+        ("x", "no key x; "),
+    ):
+        hands.obey(key)
+        assert said in hands.caption()[1]
+    hands.updates = 550
+    hands.obey("b")
+    assert "update 550" in hands.caption()[1], "a tile that is put back does not count the others back"
+    hands.obey("q")
+    assert "pulled and put back: 3" in hands.caption()[1]
+
+
+def test_other_keys_do_nothing_but_say_so(hands: Hands) -> None:
+    before = vars(hands) | {"said": "no key ?; the keys are below"}
     for key in ("x", "up", "\n", "?"):
         hands.obey(key)
     assert vars(hands) == before

@@ -11,7 +11,9 @@ from tilenca.commands import make_estimate
 from tilenca.commands.make_estimate import Pace, building_s, emulating_s, measuring_s, pace_of, training_s
 from tilenca.commands.train_plan import make_plan
 from tilenca.commands.train_steps import jobs_of, last_suite
-from tilenca.training.runner import make_trainer
+from tilenca.model.file import checkpoints, load_model
+from tilenca.training.runner import make_trainer, train
+from tilenca.training.trainer import model_of
 
 
 def test_the_estimate_counts_what_is_left_of_every_seed(two_shapes: Path, tmp_path: Path) -> None:
@@ -36,6 +38,22 @@ def test_the_estimate_counts_what_is_left_of_every_seed(two_shapes: Path, tmp_pa
     assert make_estimate._longest([10, 40, 20, 5], 1) == 75
     assert make_estimate._longest([10, 40, 20, 5], 2) == 40
     assert make_estimate._longest([10, 40], 4) == 40
+
+
+def test_the_iterations_that_were_timed_are_kept_and_lead_to_the_same_model(
+    two_shapes: Path, trained_model: Path, tmp_path: Path
+) -> None:
+    args = asked(two_shapes, tmp_path, "--force")
+    training_s(args, make_plan(args))
+    assert not checkpoints(tmp_path), "--force begins anew"
+    args = asked(two_shapes, tmp_path)
+    training_s(args, make_plan(args))
+    (job,) = jobs_of(args, make_plan(args))
+    assert args.resume
+    assert 3 < make_trainer(job).iteration < 20, "a measurement at 20 iterations is the training's own"
+    trained = train(job, lambda news: None)
+    model, _ = model_of(trained, {})
+    assert model.model_id == load_model(trained_model).model_id
 
 
 def test_measuring_takes_longer_the_more_runs_and_the_slower_the_machine(

@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
-from tilenca.commands.origin import model_with_id, own_shapes, shapes_or_own, why_wrong, without_a_dash
+from tilenca.commands.origin import (
+    model_with_id,
+    own_drawings,
+    own_shapes,
+    shapes_or_own,
+    why_wrong,
+    without_a_dash,
+)
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.file import load_task, shape_table
 
@@ -142,6 +149,24 @@ def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tm
     (tmp_path / "mine.toml").write_text(shape_table("4", ["#.", "##"]), encoding="utf-8")
     told = why_wrong(model, load_task(tmp_path / "mine.toml"))
     assert told.startswith(f"model {ours} was made of digits.toml digits-3x3.toml, and takes these for")
-    assert f"tilenca make {tmp_path / 'mine.toml'}; more reasons: docs/how-to/debug.md" in told
+    assert (
+        "put these drawings, with their labels, into a copy of shapes/digits.toml and run tilenca make"
+        in told
+    )
+    assert "the recipe that knows damage, --recipe full (" in told
+    assert told.endswith("; more reasons: docs/how-to/debug.md")
+    signs = made_of({"sources": [{"file": "signs.toml", "sha256": "0"}]})
+    told = why_wrong(signs, load_task(tmp_path / "mine.toml"))
+    assert "into signs.toml and run tilenca make signs.toml --force; or train" in told
     without = why_wrong(replace(model, metadata={}), own)
     assert without.startswith(f"model {ours} was made of other drawings")
+
+
+def test_the_drawings_that_a_model_was_made_of_are_known_in_other_files_too(tmp_path: Path) -> None:
+    own = load_task(paths.DEFAULT_SHAPES)
+    assert own_drawings(DIGITS, tmp_path, own) == {shape.name for shape in own.shapes}
+    text = shape_table("4", own.find("4").rows) + shape_table("4", ["#.", "##"])
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    mine = load_task(tmp_path / "mine.toml")
+    assert own_drawings(DIGITS, tmp_path, mine) == {"4"}, "4@2 is none of its drawings"
+    assert own_drawings(replace(DIGITS, metadata={}), tmp_path, mine) == set()

@@ -12,6 +12,7 @@ from tilenca.commands import own_firmware
 from tilenca.commands.own_firmware import build_beside, image_of, image_to_write
 from tilenca.emulator.greeting import greeting
 from tilenca.model.file import load_model
+from tilenca.training.sessions import noted
 
 
 def project_files() -> dict[Path, bytes]:
@@ -54,6 +55,17 @@ def test_a_model_without_a_build_says_how_to_get_one(tmp_path: Path) -> None:
     with pytest.raises(
         BuildError, match=r"no firmware was built of it; run: tilenca export --model .* --build"
     ):
+        image_of(tmp_path)
+
+
+def test_a_model_that_is_not_there_yet_is_in_training_or_was_interrupted(tmp_path: Path) -> None:
+    with (
+        pytest.raises(BuildError, match="its model is still being trained or measured"),
+        noted(tmp_path, "tilenca train --out mine", "quick", False),
+    ):
+        image_of(tmp_path)
+    (tmp_path / "checkpoint-1.pt").touch()
+    with pytest.raises(BuildError, match="no model yet; go on with: tilenca train --out mine --resume"):
         image_of(tmp_path)
 
 

@@ -29,6 +29,7 @@ def arguments(shapes: Path, out: Path, *more: str) -> argparse.Namespace:
 def test_a_view_hears_of_every_seed_and_every_row(two_shapes: Path, tmp_path: Path) -> None:
     heard: list[Progress] = []
     rows: list[str] = []
+    counts: list[int] = []
 
     @contextmanager
     def training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
@@ -36,8 +37,9 @@ def test_a_view_hears_of_every_seed_and_every_row(two_shapes: Path, tmp_path: Pa
         yield heard.append
 
     @contextmanager
-    def measuring(where: str) -> Iterator[Callable[[str], None]]:
+    def measuring(where: str, count: int) -> Iterator[Callable[[str], None]]:
         assert where == str(tmp_path / "README.md")
+        counts.append(count)
         yield rows.append
 
     args = arguments(two_shapes, tmp_path, "--seed", "3", "--seeds", "2", "--jobs", "1", "--iterations", "12")
@@ -45,7 +47,10 @@ def test_a_view_hears_of_every_seed_and_every_row(two_shapes: Path, tmp_path: Pa
     assert made.folder == tmp_path
     assert {one.seed for one in heard} == {3, 4}
     assert heard[-1].iteration == 12
-    assert len(rows) == len(made.metrics["rows"])
+    assert [len(rows)] == counts == [len(made.metrics["rows"])]
+    short = [one.rows for one in heard if one.rows is not None and one.seed == 3]
+    assert short[0] == (0, short[0][1])
+    assert short[-1] == (short[0][1], short[0][1]), "all rows of the measurement at the end"
     assert load_model(tmp_path).model_id == made.model.model_id
     assert json.loads((tmp_path / "metrics.json").read_text()) == made.metrics
     assert (tmp_path / "history.png").exists()

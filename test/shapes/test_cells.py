@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tilenca.shapes.cells import cells_of, connected, removable
+from tilenca.shapes.cells import apart, cells_of, connected, removable
 
 RING = ("###", "#.#", "###")
 
@@ -18,6 +18,8 @@ def test_corners_do_not_connect_and_sides_do() -> None:
     assert not connected([(0, 0), (1, 1)])
     assert connected([(5, 5)])
     assert connected([])
+    assert apart([(0, 0), (0, 1), (1, 1), (3, 2)]) == (3, 2)
+    assert apart([(0, 0), (2, 0), (2, 1)]) == (0, 0)
 
 
 def test_of_a_line_only_the_ends_may_go_and_of_a_ring_every_tile() -> None:

@@ -85,7 +85,7 @@ def test_an_unknown_shape_lists_the_known_ones(tmp_path: Path) -> None:
     [
         (shape("1", "##", "#"), 5, "ragged rows"),
         (shape("1", "##", "#x"), 5, "unknown character 'x'"),
-        (shape("1", "##") + shape("2", "#.#"), 9, "not connected"),
+        (shape("1", "##") + shape("2", "#.#"), 9, "not connected: the tile in row 1, column 1 is apart"),
         (shape("1", "#.", "  ", ".#"), 4, "not connected"),
         (shape("1", "##", "", "##"), 5, "ragged rows"),
         (shape("1", "..", ".."), 4, "no tile"),
@@ -133,6 +133,10 @@ def test_a_file_that_is_no_shape_file(tmp_path: Path, text: str, fact: str) -> N
 
 def test_a_missing_or_binary_file(tmp_path: Path) -> None:
     assert "No such file" in refusal(tmp_path / "none.toml")
+    (tmp_path / "signs.toml").touch()
+    assert "signs.tml: No such file or directory (did you mean 'signs.toml'?)" in refusal(
+        tmp_path / "signs.tml"
+    )
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
     assert "not UTF-8" in refusal(binary)

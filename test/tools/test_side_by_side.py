@@ -113,4 +113,6 @@ def test_what_takes_long_is_told_now_and_then_by_name(capsys: pytest.CaptureFixt
         lanes = dict.fromkeys(("Python packages", "the C++ libraries"), lambda: void(told.wait(LIMIT_S)))
         side_by_side(lanes, still_s=0.01)
     first = capsys.readouterr().err.splitlines()[0]
-    assert re.fullmatch(r"setup: still busy with Python packages and the C\+\+ libraries \(0 s\)", first)
+    assert re.fullmatch(
+        r"setup: still busy with Python packages and the C\+\+ libraries \(0 s; 0 of \d parts done\)", first
+    )

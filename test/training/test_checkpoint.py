@@ -1,5 +1,6 @@
 """A checkpoint is whole or not at all, and of this run or refused."""
 
+import copy
 import io
 import resource
 from collections.abc import Callable, Iterator
@@ -18,7 +19,7 @@ from support.strategies import damaged
 from support.training import SMOKE, job_of, trainer
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
-from tilenca.training.checkpoint import glance
+from tilenca.training.checkpoint import glance, refuse_other
 from tilenca.training.runner import make_trainer
 from tilenca.training.trainer import Trainer, trained_at
 
@@ -26,8 +27,27 @@ from tilenca.training.trainer import Trainer, trained_at
 def test_a_checkpoint_of_another_configuration_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "checkpoint.pt"
     trainer(seed=1).save(path)
-    with pytest.raises(UsageError, match="made with another seed"):
+    with pytest.raises(UsageError, match="--seed 2, the checkpoint has 1; give the arguments of the run"):
         trainer(seed=2).load(path)
+
+
+def test_what_differs_is_told_by_the_option_and_both_values() -> None:
+    theirs = trainer(seed=1).config.as_json()
+    ours = copy.deepcopy(theirs)
+    refuse_other(Path("c.pt"), theirs, ours)
+    ours["recipe"] |= {"iterations": 1000, "clip_norm": 9.0}
+    ours["dimensions"]["hidden1"] = 32
+    ours["labels"] = ["L", "t"]
+    with pytest.raises(UsageError) as refused:
+        refuse_other(Path("c.pt"), theirs, ours)
+    was, labels = theirs["recipe"]["iterations"], " ".join(theirs["labels"])
+    assert str(refused.value).startswith(
+        f"c.pt: --iterations 1000, the checkpoint has {was}; --hidden 32, the checkpoint has "
+        f"{theirs['dimensions']['hidden1']}; another --recipe; the labels L t, "
+        f"the checkpoint has {labels}; give"
+    )
+    with pytest.raises(UsageError, match="--iterations 1000, the checkpoint has None"):
+        refuse_other(Path("c.pt"), {"recipe": 3}, ours)
 
 
 class Run:

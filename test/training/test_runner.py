@@ -106,4 +106,4 @@ def test_an_interrupt_while_preparing_ends_at_once(
 
     monkeypatch.setattr("tilenca.training.runner.build", interrupt)
     assert train(two_shapes, tmp_path) == 130
-    assert "interrupted while training, before there was anything to keep" in capsys.readouterr().err
+    assert "interrupted while training, before the first iteration was done" in capsys.readouterr().err

@@ -35,9 +35,10 @@ def test_tiles_that_show_something_else_are_counted_and_listed_if_wanted() -> No
     emulation = emulated(four_called_one)
     count = len(four_called_one.cells)
     assert emulation.hello is not None
-    words = f"1: WRONG, 0 of {count} tiles show 1, {count} 4 with model {emulation.hello.model_id:04X}"
+    words = f"1: WRONG, 0 of {count} tiles show 1, {count} show 4; model {emulation.hello.model_id:04X}"
     assert verdict(emulation) == f"{words}; -v lists them"
-    assert verdict(emulation, every=True).startswith(f"{words}: tile 1 4, tile 2 4")
+    assert verdict(emulation, every=True).startswith(f"{words}: tile 1 shows 4, tile 2 shows 4")
+    assert f"{words} is models/mine; -v lists them" in verdict(emulation, place="models/mine")
     assert judge(emulation, 0) == WRONG
     assert mismatch(emulation, TASK) is None, "the model is for these drawings"
 
@@ -49,8 +50,8 @@ def test_tiles_that_have_not_had_their_time_are_not_wrong_yet() -> None:
     assert judge(emulation, done) == WRONG
     assert judge(emulation, 60) == NOT_YET
     assert verdict(emulation, 60) == (
-        f"1: not yet, 0 of 10 tiles show 1, 10 4 after {done} updates; such a drawing may take 60: run on, "
-        "with --updates 60"
+        f"1: not yet, 0 of 10 tiles show 1, 10 show 4 after {done} updates; such a drawing may take 60: "
+        "run on, with --updates 60"
     )
 
 
@@ -60,7 +61,18 @@ def test_before_their_first_update_tiles_are_not_wrong_yet() -> None:
     assert "1: not yet, 5 of 5 tiles have done no update (a bootloader takes the first second)" in verdict(
         emulation, 60
     )
-    assert verdict(emulation, 60, every=True).endswith("tile 4 nothing, tile 5 nothing")
+    assert verdict(emulation, 60, every=True).endswith("tile 4 shows nothing, tile 5 shows nothing")
+
+
+def test_tiles_that_a_fault_sets_apart_are_named() -> None:
+    emulation = emulated(TASK.find("1"), seconds=0.001)
+    emulation.faults.plug(1, False)
+    assert emulation.faults.parts() == [[2, 3, 4], [0]]
+    assert verdict(emulation, every=True).endswith(
+        "; tile 2 without power; tile 1 is joined to no other: it answers for itself"
+    )
+    emulation.faults.plug(3, False)
+    assert emulation.faults.parts() == [[0], [2], [4]]
 
 
 def test_a_model_of_other_shapes_is_told_with_the_remedy() -> None:

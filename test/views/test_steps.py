@@ -44,6 +44,29 @@ def test_before_a_step_has_a_pace_it_takes_as_long_as_expected() -> None:
     assert step.left_s(500.0) == 0.0
 
 
+def test_a_step_beyond_its_estimate_has_no_number_but_by_its_own_pace() -> None:
+    step = Step("train", expected_s=100.0, began_s=0.0)
+    assert [step.left_text(now_s) for now_s in (20.0, 85.0, 101.0)] == [
+        "about 80 s left",
+        "about 20 s left",
+        "longer than estimated",
+    ]
+    step.share = 0.5
+    assert step.left_text(120.0) == "about 2 min left"
+    unknown = Step("check", began_s=0.0)
+    assert (unknown.left_text(99.0), unknown.left_s(99.0), unknown.done(99.0)) == ("", 0.0, 0.0)
+
+
+def test_a_training_is_told_before_its_first_iteration(capsys: pytest.CaptureFixture[str]) -> None:
+    steps = Steps(NAMES, "train")
+    steps.begin("train")
+    with steps.training_views("train", "measure").training((1,), 200) as tell:
+        assert "train: 0 of 200 iterations; preparing" in drawn(steps.below(ascii_only=True))
+        tell(Progress(1, 100, 0.1, 0.5, None, (2, 9)))
+        assert "100 of 200 iterations" in drawn(steps.below(ascii_only=True))
+        assert "measuring, 2 of 9 rows measured" in drawn(steps.below(ascii_only=True))
+
+
 def test_a_step_with_a_pace_goes_by_it_and_not_by_earlier_work() -> None:
     step = Step("train", expected_s=1000.0, began_s=0.0, share=0.6, first=0.5)
     assert step.left_s(10.0) == pytest.approx(40.0)
@@ -103,7 +126,7 @@ def test_on_a_terminal_the_steps_stand_together_with_the_curve_of_the_training(
             tell(Progress(2, 50, 0.1, 1.0, None))
             for lines in (steps.above(), steps.below(ascii_only=False)):
                 assert lines
-        with views.measuring("mine/README.md") as say:
+        with views.measuring("mine/README.md", 9) as say:
             say("5x4: 0.998")
         steps.end("measure", "7 of 8 targets held")
     assert re.search(r"check +━+ 2 drawings", screen.text)

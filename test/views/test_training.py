@@ -74,13 +74,14 @@ def test_without_a_terminal_each_seed_tells_a_line_a_minute_and_its_end(
 def test_a_measurement_tells_where_its_rows_will_be_and_how_many_there_are(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with show_measuring("mine/README.md") as tell:
+    with show_measuring("mine/README.md", 30) as tell:
         for row in range(25):
             tell(f"row {row}")
     first, *lines = capsys.readouterr().err.splitlines()
     assert first.endswith("every row will be in mine/README.md")
-    assert lines == ["10 rows measured", "20 rows measured"]
-    with stderr_on_terminal(monkeypatch, width=140) as screen, show_measuring("mine/README.md") as tell:
+    assert lines == ["10 of 30 rows measured", "20 of 30 rows measured"]
+    with stderr_on_terminal(monkeypatch, width=140) as screen, show_measuring("mine/README.md", 30) as tell:
         tell("5x4: 0.998")
         assert not capsys.readouterr().out
     assert "mine/README.md" in screen.text
+    assert "1 of 30 rows measured; 5x4: 0.998" in screen.text

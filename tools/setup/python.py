@@ -122,7 +122,9 @@ def _install_levels(levels: Sequence[str], project: dict[str, Any]) -> None:
         return
     packages = [requirement for level in lacking for requirement in wanted[level]]
     size = sum(SIZE_MB[level] for level in lacking)
-    say(f"installing Python packages, {size} MB on the disk: {', '.join(map(_name, packages))}")
+    say(
+        f"installing Python packages, {size} MB on the disk: {', '.join(dict.fromkeys(map(_name, packages)))}"
+    )
     for level in lacking:
         stamps[level].clear()
     _pip("install", "--constraint", CONSTRAINTS, *packages)

@@ -33,7 +33,8 @@ def side_by_side(lanes: Mapping[str, Callable[[], None]], still_s: float = STILL
                         stop()
                 if not ended:
                     names = " and ".join(running.values())
-                    say(f"still busy with {names} ({time.monotonic() - started:.0f} s)")
+                    done = f"{len(lanes) - len(running)} of {len(lanes)} parts done"
+                    say(f"still busy with {names} ({time.monotonic() - started:.0f} s; {done})")
         except KeyboardInterrupt:
             stop()
             raise

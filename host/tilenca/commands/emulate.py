@@ -23,7 +23,7 @@ from tilenca.commands.emulate_runs import (
     updates_for,
 )
 from tilenca.commands.emulate_watch import watch_all
-from tilenca.commands.origin import model_with_id, own_shapes, without_a_dash
+from tilenca.commands.origin import model_with_id, own_drawings, own_shapes, without_a_dash
 from tilenca.commands.own_firmware import image_of
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.fault_spec import FaultError
@@ -135,7 +135,10 @@ def _prepare(args: argparse.Namespace) -> _Run:
         told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
     else:
         told = _foreign(hello, known and known[0], task)
-    args.foreign, args.own_model = bool(told), known and known[0]
+    args.foreign = bool(told)
+    args.own_model, args.own_folder = known or (None, None)
+    own = own_drawings(*known, task) if known else {shape.name for shape in task.shapes}
+    args.others = {shape.name for shape in shapes if shape.name.partition(" ")[0] not in own}
     for note in told:
         warn(f"tilenca: {note}")
     settings = EmulationSettings(
@@ -154,8 +157,10 @@ def _prepare(args: argparse.Namespace) -> _Run:
 
     def lay_out(shape: Shape) -> Emulation:
         most = None if args.updates else updates_for(shape)
+        least = most if most and shape.name in args.others else settings.updates
+        asked = replace(settings, updates=least, most_updates=most)
         try:
-            return Emulation(shape, task.labels, image, replace(settings, most_updates=most), defaults)
+            return Emulation(shape, task.labels, image, asked, defaults)
         except FaultError as error:
             raise UsageError(f"shape '{shape.name}': {error}") from error
 

@@ -46,7 +46,7 @@ def add_emulate_arguments(parser: argparse.ArgumentParser) -> None:
         type=count,
         metavar="N",
         help=f"run until every tile did N updates ({DEFAULT_UPDATES}, or more until all agree, at most what "
-        "such a drawing may take)",
+        "such a drawing may take, and all of that if the model was not made of it)",
     )
     add(
         "--period-ms",

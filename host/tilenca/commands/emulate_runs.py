@@ -3,6 +3,7 @@
 import argparse
 import json
 import math
+import shlex
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -13,6 +14,7 @@ from typing import Any
 
 from rich.console import Console
 
+from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.emulate_states import StateCheck
 from tilenca.commands.origin import why_wrong
@@ -29,6 +31,7 @@ from tilenca.views.progress import Tell, show_progress
 from tilenca.views.tiles import Picture, beside
 
 PLAIN_WIDTH = 80
+MOST_NAMED = 8  # drawings in a note
 AFTERWARDS_S = 2  # that the tiles of an example have after a fault
 
 # Lays out one shape in tiles.
@@ -69,9 +72,21 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
     judged = judge(emulation, expected)
     if judged == WRONG and args.own_model is not None and not (args.foreign or args.fault):
         notes.append(why_wrong(args.own_model, task))
+    if args.others and args.own_model is not None and not args.foreign:
+        notes.append(_of_one_run(args, task))
     report = emulation.report(time.monotonic() - started) | {"verdict": judged}
-    words = verdict(emulation, expected, args.verbose)
+    words = verdict(emulation, expected, args.verbose, args.own_folder and place_of(args.own_folder))
     return EmulationResult(report, take_picture(emulation), words, tuple(notes))
+
+
+def _of_one_run(args: argparse.Namespace, task: Task) -> str:
+    """What a right answer on a drawing that the model was not made of says, and how to ask more."""
+    drawings = sorted(name.partition(" ")[0] for name in args.others)
+    named = shlex.join(word for name in drawings for word in ("--shape", name)) if len(drawings) == 1 else ""
+    words = [f"tilenca simulate --model {shlex.quote(str(args.own_folder))}"]
+    words += [f"--shapes {shlex.quote(str(task.path))}", *([named] if named else []), "--runs 100"]
+    which = " ".join(drawings[:MOST_NAMED]) + (" ..." if len(drawings) > MOST_NAMED else "")
+    return f"note: the model was not made of {which}: this is one run of one seed; more: {' '.join(words)}"
 
 
 def _too_late(emulation: Emulation) -> Iterator[str]:

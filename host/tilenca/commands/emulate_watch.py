@@ -24,10 +24,11 @@ SETTLING_S = 0.001
 SPEEDS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2, 4)
 USUAL = SPEEDS.index(1)
 LEAST_S = 1e-6  # a step that is nearer to its end is done
+MOST_DIGITS = 3  # of a tile's number
 PAUSED_S = 0.1  # between looks at the keyboard while nothing runs
 SMOOTH_S = 0.05  # of the wall clock between two pictures, at most
 STEP_S = 0.02  # as long as an update where the firmware does not say
-KEYS = "space pause  . step  + - speed  p pull a tile  b put back  n next  q quit"
+KEYS = "space pause  . step  + - speed  p pull (7p: tile 7)  b put back  n next  q quit"
 
 Wait = Callable[[float], Sequence[str]]
 
@@ -44,6 +45,10 @@ class Hands:
         step_to_s: the emulated time until which a step runs; None: none does.
         out: the tiles that were pulled, the last one last.
         ended: `next` or `quit`, once asked for.
+        number: the digits typed so far, for the tile that `p` pulls.
+        said: an answer to the last key, if there is one.
+        pulled: all tiles that were pulled, back by now or not.
+        updates: the most that all tiles had done: one that is put back begins anew, or where it was.
     """
 
     emulation: Emulation
@@ -53,30 +58,48 @@ class Hands:
     step_to_s: float | None = None
     out: list[int] = field(default_factory=list)
     ended: str | None = None
+    number: str = ""
+    said: str = ""
+    pulled: list[int] = field(default_factory=list)
+    updates: int = 0
 
     def obey(self, key: str) -> None:
-        """Does what a key says; any other key does nothing."""
-        if key == " ":
+        """Does what a key says; any other key is answered."""
+        self.said, number = "", self.number
+        self.number = (number + key)[-MOST_DIGITS:] if key.isdecimal() and key.isascii() else ""
+        if self.number:
+            self.said = f"tile {self.number}: p pulls it"
+        elif key == " ":
             self.paused, self.step_to_s = not self.paused, None
         elif key == ".":
             self.paused, self.step_to_s = True, self.emulation.array.time_s + self.period_s
         elif key in "+-":
             self.speed = min(max(self.speed + (1 if key == "+" else -1), 0), len(SPEEDS) - 1)
         elif key == "p":
-            self._pull()
+            self._pull(number)
         elif key == "b":
             while self.out:
                 self.emulation.faults.plug(self.out.pop(), True)
         elif key in "nq":
             self.ended = "next" if key == "n" else "quit"
+        elif key.isprintable():
+            self.said = f"no key {key}; the keys are below"
 
-    def _pull(self) -> None:
-        """Pulls the next tile, far from the one before; one tile stays."""
+    def _pull(self, number: str) -> None:
+        """Pulls the tile of that number, or without one the next, far from the one before; one tile stays."""
         standing = [tile.index for tile in self.emulation.array if tile.powered]
-        if len(standing) > 1:
-            tile = standing[(len(standing) // 2 + 3 * len(self.out)) % len(standing)]
+        tile = (
+            int(number) - 1 if number else standing[(len(standing) // 2 + 3 * len(self.out)) % len(standing)]
+        )
+        if tile not in standing:
+            self.said = f"no tile {number} with power to pull"
+        elif len(standing) == 1:
+            self.said = "the last tile stays"
+        else:
             self.emulation.faults.plug(tile, False)
             self.out.append(tile)
+            self.pulled.append(tile)
+            self.said = f"pulled tile {tile + 1}"
 
     @property
     def stands(self) -> bool:
@@ -88,7 +111,8 @@ class Hands:
     def caption(self) -> list[str]:
         """What the tiles show; the time, the least advanced tile's updates, and what was asked."""
         running = self.emulation
-        parts = [f"{running.array.time_s:.2f} s", f"update {running.fewest_updates()}"]
+        self.updates = max(self.updates, running.fewest_updates())
+        parts = [f"{running.array.time_s:.2f} s", f"update {self.updates}"]
         if self.speed != USUAL:
             speed = SPEEDS[self.speed]
             parts.append(f"{speed:g} times real time" if speed > 1 else f"1/{1 / speed:.0f} of real time")
@@ -97,6 +121,12 @@ class Hands:
         if self.out:
             tiles = ", ".join(str(tile + 1) for tile in self.out)
             parts.append(f"pulled: tile{'s' * (len(self.out) > 1)} {tiles}")
+        elif self.ended is not None and self.pulled:
+            parts.append(
+                f"pulled and put back: {', '.join(str(tile + 1) for tile in dict.fromkeys(self.pulled))}"
+            )
+        if self.said and not self.said.startswith("pulled"):
+            parts.append(self.said)
         return [f"{running.shape.name}: {counted(running)}", "   ".join(parts)]
 
     def slice_s(self) -> float:

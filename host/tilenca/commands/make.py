@@ -14,9 +14,10 @@ from threading import Lock
 from typing import Any
 
 from tilenca.base import paths
-from tilenca.base.errors import UsageError
+from tilenca.base.errors import InterruptedRunError, UsageError
 from tilenca.base.project import project
 from tilenca.base.shipped import shapes_file
+from tilenca.base.signals import promising
 from tilenca.base.stdio import warn
 from tilenca.commands import emulate
 from tilenca.commands.arguments import Parser
@@ -27,7 +28,7 @@ from tilenca.commands.own_firmware import build_beside
 from tilenca.commands.train import judged
 from tilenca.commands.train_options import add_training_arguments
 from tilenca.commands.train_plan import TrainingPlan, check_out, doubts, make_plan
-from tilenca.commands.train_steps import last_suite, train_model
+from tilenca.commands.train_steps import check_resumed, last_suite, train_model
 from tilenca.evaluation.metrics_file import read_metrics
 from tilenca.evaluation.suites import Suite
 from tilenca.model import cost
@@ -71,8 +72,15 @@ def run(args: argparse.Namespace) -> int:
     if not done:
         _check_unfinished(args, plan)
         check_out(args, plan)
+        check_resumed(args, plan)
     with show_steps(STEPS, TRAIN) as steps:
-        suite = _check(args, plan, fits, done, steps)
+        try:
+            with promising("nothing is lost but the check; ends as soon as the part at work is done"):
+                suite = _check(args, plan, fits, done, steps)
+        except KeyboardInterrupt:
+            raise InterruptedRunError(
+                "interrupted while checking: nothing is lost but the check; run the same command again"
+            ) from None
         status = 0 if done else _train(args, plan, suite, steps)
         model = load_model(args.out)
         steps.begin(BUILD)
@@ -112,18 +120,21 @@ def _check(
 ) -> Suite | None:
     """Says what to know of the drawings, and how long all will take; returns what the model is asked."""
     steps.begin(CHECK)
+    steps.move(CHECK, "1 of 4, looking for drawings that are alike")
     for note in doubts(plan):
         warn(note)
     if not fits.fits_period:
         warn(str(fits))
     suite = None
-    steps.move(CHECK, "estimating how long all of it takes")
     if done:
         pace = pace_of(load_model(args.out), plan.task)
     elif args.scheduler is None:  # nobody knows how fast a cluster is
+        steps.move(CHECK, "2 of 4, timing the first iterations")
         train_s, untrained = training_s(args, plan)
-        pace, suite = pace_of(untrained, plan.task), last_suite(args, plan)
         steps.expect(TRAIN, train_s)
+        steps.move(CHECK, "3 of 4, making the drawings that the model will be measured with")
+        pace, suite = pace_of(untrained, plan.task), last_suite(args, plan)
+        steps.move(CHECK, "4 of 4, counting the measurements")
         steps.expect(MEASURE, measuring_s(untrained, suite, plan.validation_runs, pace))
     if done or args.scheduler is None:
         steps.expect(BUILD, building_s(args, pace))

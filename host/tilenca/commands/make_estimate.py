@@ -77,7 +77,10 @@ def emulating_s(plan: TrainingPlan, pace: Pace) -> float:
 
 
 def training_s(args: argparse.Namespace, plan: TrainingPlan) -> tuple[float, Model]:
-    """How long the training takes at most, from some iterations; and a model as it is before it.
+    """How long the training takes at most, from some iterations; and a model as it is after these.
+
+    The training goes on from a checkpoint after these (`args.resume`), to the same bytes.
+    A training with `--force` begins anew.
 
     Raises:
         UsageError: a checkpoint is of no use.
@@ -87,19 +90,25 @@ def training_s(args: argparse.Namespace, plan: TrainingPlan) -> tuple[float, Mod
 
     jobs = jobs_of(args, plan)
     left = [_left(job) for job in jobs]
-    trainer = make_trainer(jobs[left.index(max(left))])
-    model, _ = model_of(trainer.now(), {})
+    job = jobs[left.index(max(left))]
+    trainer = make_trainer(job)
+    before = trainer.iteration
     if max(left) <= TIMED_STEPS:
-        return 0.0, model
+        return 0.0, model_of(trainer.now(), {})[0]
     trainer.step()  # the first one takes longer
-    began_s, done = time.perf_counter(), 0
+    began_s, done, every = time.perf_counter(), 0, plan.recipe.check_every
     while (passed_s := time.perf_counter() - began_s) < TIMED_S or done < TIMED_STEPS:
-        if trainer.done:
+        if trainer.iteration == trainer.config.recipe.iterations - 1:
             break
+        if every and (trainer.iteration + 1) % every == 0 and done:
+            break  # the training itself measures there
         trainer.step()
         done += 1
-    each_s = passed_s / done
-    return each_s * _longest(left, at_once(args, plan)), model
+    each_s = passed_s / max(done, 1)
+    if not args.force and (not every or trainer.iteration // every == before // every):
+        trainer.save(job.checkpoint)
+        args.resume = True
+    return each_s * _longest(left, at_once(args, plan)), model_of(trainer.now(), {})[0]
 
 
 def _left(job: "Job") -> int:

@@ -10,10 +10,11 @@ from tilenca.base.errors import UsageError
 from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.model.file import Model, load_model
-from tilenca.shapes.file import UNKNOWN, Task
+from tilenca.shapes.file import UNKNOWN, Task, load_task
 
 MOST_NAME = 255  # bytes; systems refuse longer ones
 NEAR = 3  # folders above a model in which its shape files are looked for
+FULL = "--recipe full (ten drawings: 12 minutes on two free cores)"
 
 
 def shapes_or_own(given: list[Path] | None, model: Model, folder: Path) -> list[Path]:
@@ -53,10 +54,7 @@ def _is_name(name: object) -> bool:
 
 def _find(name: str, sha256: str | None, folder: Path) -> Path:
     """The file of that name, best with the content that the model was trained on."""
-    roots = [Path(), *([paths.PROJECT] if paths.PROJECT else []), paths.ROOT]
-    roots += [folder, *folder.resolve().parents[:NEAR]]
-    found = [path for root in roots if (path := root / name).is_file()]
-    found += [path for path in [paths.SHAPES / Path(name).name] if path.is_file() and path not in found]
+    found = _places(name, folder)
     for path in found:
         if sha256 is None or hashlib.sha256(path.read_bytes()).hexdigest() == sha256:
             return path
@@ -67,6 +65,14 @@ def _find(name: str, sha256: str | None, folder: Path) -> Path:
     ):  # what ships together is tested together
         warn(f"note: {found[0]} has changed since {folder} was trained on it")
     return found[0]
+
+
+def _places(name: str, folder: Path) -> list[Path]:
+    """The files of that name: here, in the project, near the model, and among those that ship."""
+    roots = [Path(), *([paths.PROJECT] if paths.PROJECT else []), paths.ROOT]
+    roots += [folder, *folder.resolve().parents[:NEAR]]
+    found = [path for root in roots if (path := root / name).is_file()]
+    return found + [path for path in [paths.SHAPES / Path(name).name] if path.is_file() and path not in found]
 
 
 def model_with_id(model_id: int, first: Path | None = None) -> tuple[Model, Path] | None:
@@ -93,19 +99,50 @@ def _descriptions() -> Iterator[Path]:
         yield from sorted(root.glob("*/model.json"))
 
 
+def own_drawings(model: Model, folder: Path, task: Task) -> set[str]:
+    """The names of the drawings of a file that the model was made of, as drawn: all, if the file is its own.
+
+    Args:
+        model: with metadata.
+        folder: that it was read from; its shape files are looked for there too.
+        task: the file's.
+    """
+    if _is_of(model, task):
+        return {shape.name for shape in task.shapes}
+    own: set[tuple[str, tuple[str, ...]]] = set()
+    for name, sha256 in _hashes(model).items():
+        for path in _places(name, folder):
+            if hashlib.sha256(path.read_bytes()).hexdigest() == sha256:
+                own |= {(shape.label, shape.rows) for shape in load_task(path).shapes}
+                break
+    return {shape.name for shape in task.shapes if (shape.label, shape.rows) in own}
+
+
+def _is_of(model: Model, task: Task) -> bool:
+    """Whether the model was made of this file; what ships together is."""
+    named = _hashes(model)
+    ships_with_it = task.path.name in named and task.path.resolve().is_relative_to(paths.SHAPES.resolve())
+    return ships_with_it or hashlib.sha256(task.path.read_bytes()).hexdigest() in named.values()
+
+
 def why_wrong(model: Model, task: Task) -> str:
     """What to look at where tiles run the right model and show another label than the file says."""
-    named = _hashes(model)
-    sha256 = hashlib.sha256(task.path.read_bytes()).hexdigest()
     id_text = f"{model.model_id:04X}"
-    ships_with_it = task.path.name in named and task.path.resolve().is_relative_to(paths.SHAPES.resolve())
-    if sha256 in named.values() or ships_with_it:
-        made = f"model {id_text} was made of this file, and does not hold it; a better one: --recipe full"
+    if _is_of(model, task):
+        made = f"model {id_text} was made of this file, and does not hold it; a better one: {FULL}"
     else:
+        named = [*_hashes(model)]
         files = " ".join(named) or "other drawings"
+        into, make = "one shape file with those", "tilenca make on it"
+        if named and (paths.SHAPES / named[0]).is_file():
+            into = f"a copy of shapes/{named[0]}"
+        elif named:
+            into = named[0]
+            make = f"tilenca make {into} --force"
         made = (
-            f"model {id_text} was made of {files}, and takes these for something else; one of these: "
-            f"tilenca make {task.path}"
+            f"model {id_text} was made of {files}, and takes these for something else; put these drawings, "
+            f"with their labels, into {into} and run {make}; or train with the recipe that knows damage, "
+            f"{FULL}"
         )
     return f"{made}; more reasons: docs/how-to/debug.md"
 

@@ -11,8 +11,9 @@ from tilenca.base.project import build_remedy, firmware_image, project
 from tilenca.commands.arguments import existing_image
 from tilenca.emulator.greeting import greeting
 from tilenca.fleet.build import build
-from tilenca.model.file import Model, load_model
+from tilenca.model.file import Model, checkpoints, load_model
 from tilenca.model.render import check_fits, render, write_files
+from tilenca.training.sessions import sessions_of
 
 PARTS = ("include", "src")
 RENDERED = "model"  # the folder of both parts that `render` fills
@@ -58,6 +59,8 @@ def image_of(folder: Path) -> Path:
     image = paths.model_elf(folder)
     if image.exists():
         return image
+    if not (folder / "model.json").exists() and (begun := _begun(folder)):
+        raise BuildError(f"{folder}: {begun}")
     remedy = f"run: tilenca export --model {folder} --build"
     if folder.resolve() != paths.DEFAULT_MODEL.resolve():
         raise BuildError(f"{folder}: no firmware was built of it; {remedy}")
@@ -68,6 +71,17 @@ def image_of(folder: Path) -> Path:
         other = "no model" if hello is None else f"model {hello.model_id:04X}"
         raise BuildError(f"{image}: has {other}, not {model_id:04X} of {folder}; {remedy}")
     return image
+
+
+def _begun(folder: Path) -> str | None:
+    """What to say of a folder whose model is not there yet; None: nothing was trained there."""
+    sessions = sessions_of(folder)
+    if any(session.is_running for session in sessions):
+        return "its model is still being trained or measured; wait for the end of that, or see: tilenca runs"
+    if not checkpoints(folder):
+        return None
+    command = f"{sessions[-1].command} --resume" if sessions else "the command that began it, with --resume"
+    return f"its training was interrupted, and there is no model yet; go on with: {command}"
 
 
 def image_to_write(folder: Path, building: bool = True) -> Path:

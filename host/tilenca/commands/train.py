@@ -12,7 +12,7 @@ from tilenca.commands.arguments import add_shapes_argument
 from tilenca.commands.origin import without_a_dash
 from tilenca.commands.train_options import add_training_arguments
 from tilenca.commands.train_plan import announce, check_out, make_plan
-from tilenca.commands.train_steps import train_model, training_command
+from tilenca.commands.train_steps import check_resumed, train_model, training_command
 from tilenca.model import cost
 from tilenca.training.device import check_device
 from tilenca.training.tensorboard import check_tensorboard
@@ -45,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
         check_tensorboard()
     fits = cost.check(plan.dimensions, len(plan.task.labels))
     check_out(args, plan)
+    check_resumed(args, plan)
     announce(plan, fits)
     go_on = f"continue with: {training_command(args, str)} --resume"
     made = train_model(args, plan, TrainingViews(), go_on)

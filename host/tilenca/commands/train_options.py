@@ -8,6 +8,8 @@ from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.training.recipes import RECIPES
 
+ITERATIONS = ", ".join(f"{name} {recipe.iterations:,}" for name, recipe in RECIPES.items())
+
 
 def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
     """Adds what decides how a model is trained, where, and whether it may replace another one.
@@ -35,7 +37,7 @@ def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
         "--jobs", type=whole(1, 64), metavar="J", help="seeds to train at once (one for each processor)"
     )
     add_scheduler_argument(where.add_argument)
-    add("--iterations", type=count, metavar="N", help="optimiser steps (as many as the recipe says)")
+    add("--iterations", type=count, metavar="N", help=f"optimiser steps (by the recipe: {ITERATIONS})")
     add(
         "--state",
         type=whole(2, MAX_CHANNELS),

@@ -141,6 +141,19 @@ def jobs_of(args: argparse.Namespace, plan: TrainingPlan) -> "list[Job]":
     ]
 
 
+def check_resumed(args: argparse.Namespace, plan: TrainingPlan) -> None:
+    """Refuses at once to go on from checkpoints of another run.
+
+    Raises:
+        UsageError: what differs, or a checkpoint is damaged.
+    """
+    from tilenca.training.checkpoint import glance, refuse_other
+
+    for job in jobs_of(args, plan) if args.resume else []:
+        if job.checkpoint.exists():
+            refuse_other(job.checkpoint, glance(job.checkpoint)["config"], job.config.as_json())
+
+
 def _metadata(args: argparse.Namespace) -> dict[str, object]:
     """The model's origin, as far as its configuration does not tell it."""
     return {
@@ -185,13 +198,15 @@ def _measured(
         views: what a person sees meanwhile.
     """
     from tilenca.evaluation.validation import validate
+    from tilenca.evaluation.workload import work_of
     from tilenca.simulator.engine import FastEngine
     from tilenca.training.results import Result
     from tilenca.training.trainer import model_of
 
     model, cut = model_of(trained, {**metadata, **trained.config.as_json()})
-    with views.measuring(str(out / "README.md")) as tell:
-        metrics = validate(FastEngine(model), suite, plan.validation_runs, seed, tell)
+    engine = FastEngine(model)
+    with views.measuring(str(out / "README.md"), work_of(engine, suite, plan.validation_runs).rows) as tell:
+        metrics = validate(engine, suite, plan.validation_runs, seed, tell)
     metrics |= {"weights_cut": cut, "iterations": trained.iteration, "ended_early": trained.ended}
     metrics["best_iteration"] = trained.best_iteration
     return Result(model, metrics, trained.history, trained.checks)
@@ -237,7 +252,10 @@ def _best(jobs: "list[Job]", suite_seed: int) -> "Trained":
 
 def _interrupted(args: argparse.Namespace, where: str, go_on: str) -> InterruptedRunError:
     if not checkpoints(args.out):
-        return InterruptedRunError(f"interrupted {where}, before there was anything to keep")
+        return InterruptedRunError(
+            f"interrupted {where}, before the first iteration was done: there is nothing to go on from yet; "
+            "run the same command again"
+        )
     return InterruptedRunError(f"interrupted {where}; {go_on}")
 
 

@@ -217,7 +217,7 @@ class Faults:
 
     def _join(self, link: Link) -> None:
         """Lets a cable carry bytes, unless it is cut or one of its tiles is turned."""
-        is_whole = self.cut.isdisjoint((link[:2], link[2:])) and self.turned.isdisjoint((link[0], link[2]))
+        is_whole = self._is_whole(link)
         with suppress(UsageError):  # it has gone with its tile
             (self.array.mend if is_whole else self.array.cut)(*link[:2])
 
@@ -268,3 +268,15 @@ class Faults:
             cables = ", ".join(f"{SIDES[side]} to tile {other + 1}" for side, other in there)
             raise spec.refuse(f"no cable there; tile {tile + 1} has {cables or 'none'}")
         return sorted(ends)
+
+    def _is_whole(self, link: Link) -> bool:
+        return self.cut.isdisjoint((link[:2], link[2:])) and self.turned.isdisjoint((link[0], link[2]))
+
+    def parts(self) -> list[list[int]]:
+        """The tiles with power, in parts that whole cables join, the largest first."""
+        part = {tile.index: {tile.index} for tile in self.array if tile.powered}
+        for link in self.links:
+            if self._is_whole(link) and link[0] in part and link[2] in part:
+                joined = part[link[0]] | part[link[2]]
+                part.update(dict.fromkeys(joined, joined))
+        return sorted({min(tiles): sorted(tiles) for tiles in part.values()}.values(), key=len, reverse=True)

@@ -36,6 +36,12 @@ def work_of(engine: Engine, suite: Suite, runs: int) -> Work:
     return Work(rows, workload.updates)
 
 
+def rows_during_training(engine: Engine, suite: Suite) -> int:
+    """How many rows the short measurements during training have, see `Evaluator.short_rows`."""
+    rows = sum(1 for _ in _Workload(engine, suite, runs=1, seed=0).short_rows())
+    return rows + len(suite.dead) + sum(len(each.rows) for each in suite.missing)
+
+
 class _Workload(Evaluator):
     """Takes every run as one that was right from the start.
 

@@ -25,6 +25,19 @@ def connected(cells: Iterable[tuple[int, int]]) -> bool:
     return not left
 
 
+def apart(cells: Sequence[tuple[int, int]]) -> tuple[int, int]:
+    """The first cell of the smallest part of cells that are not connected."""
+    left, parts = set(cells), []
+    while left:
+        part = [left.pop()]
+        for row, col in part:
+            near = [cell for dr, dc in OFFSETS if (cell := (row + dr, col + dc)) in left]
+            left.difference_update(near)
+            part += near
+        parts.append(sorted(part))
+    return min(parts, key=lambda part: (len(part), part[0]))[0]
+
+
 def beside(cells: Iterable[tuple[int, int]]) -> set[tuple[int, int]]:
     """The empty places that have a cell beside them."""
     tiles = set(cells)

@@ -10,6 +10,7 @@ their class (`tilenca.shapes.sizes`); `[vary]` and `[forms]` say how far drawing
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from tilenca.base.parsing import read_toml
 from tilenca.base.shipped import shapes_names
 from tilenca.base.sides import OFFSETS
 from tilenca.base.suggest import did_you_mean
-from tilenca.shapes.cells import TILE, cells_of, connected
+from tilenca.shapes.cells import TILE, apart, cells_of, connected
 from tilenca.shapes.glyphs import GLYPHS
 from tilenca.shapes.orient import (
     orientations,
@@ -130,7 +131,7 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise UsageError(
-            f"{path}: {error.strerror}; give a shape file, or one of: {' '.join(shapes_names())}"
+            f"{path}: {error.strerror}{_near(path)}; give a shape file, or one of: {' '.join(shapes_names())}"
         ) from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not UTF-8 text at byte {error.start}; save the file as UTF-8") from error
@@ -158,6 +159,13 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         for other in orientations_of_skeleton(skeleton, kind)
     )
     return replace(task, sizes=sizes, vary=vary, forms=skeletons)
+
+
+def _near(path: Path) -> str:
+    """A shape file of about that name in its folder, if there is one."""
+    with suppress(OSError):
+        return did_you_mean(path.name, [other.name for other in path.parent.glob("*.toml")])
+    return ""
 
 
 def _in_all(task: Task, kind: str | None) -> Task:
@@ -259,7 +267,11 @@ def _rows(where: str, grid_where: str, grid_line: int, label: str, grid: object)
     if not cells:
         raise UsageError(f"{grid_where}: shape '{label}' has no tile; draw at least one '#'")
     if not connected(cells):
-        raise UsageError(f"{grid_where}: shape '{label}' is not connected; tiles must touch by their sides")
+        lost_row, lost_column = apart(cells)
+        raise UsageError(
+            f"{grid_where}: shape '{label}' is not connected: the tile in row {lost_row + 1}, "
+            f"column {lost_column + 1} is apart; tiles must touch by their sides"
+        )
     top, bottom = cells[0][0], cells[-1][0]
     left, right = min(c for _, c in cells), max(c for _, c in cells)
     return tuple(row[left : right + 1] for row in marks[top : bottom + 1])

@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,12 @@ from tilenca.base.whole_file import write_whole
 from tilenca.model.file import Dimensions
 
 State = dict[str, Any]
+# Which option decides a value of a configuration.
+OPTIONS = {
+    ("recipe", "iterations"): "--iterations",
+    ("dimensions", "hidden1"): "--hidden",
+    ("dimensions", "channels"): "--state",
+}
 
 
 def write_checkpoint(path: Path, config: State, state: State) -> None:
@@ -72,16 +79,57 @@ def read_checkpoint(path: Path, config: State, device: torch.device) -> State:
         UsageError: there is none, it is damaged, or of another configuration.
     """
     state = _load(path, device)
-    theirs: State = state["config"]
-    for key, value in config.items():
-        if theirs.get(key) != value:
-            raise UsageError(
-                f"{path}: made with another {key}; give the arguments of the run to resume, or train "
-                "into another directory"
-            )
+    refuse_other(path, state["config"], config)
     if not _has_result(state, Dimensions(**config["dimensions"])):
         raise damaged(path, "of another form")
     return state
+
+
+def refuse_other(path: Path, theirs: State, ours: State) -> None:
+    """Refuses a checkpoint of another configuration, and says by which options it differs.
+
+    Args:
+        path: of the checkpoint.
+        theirs: its configuration.
+        ours: that of the run that is to go on from it.
+
+    Raises:
+        UsageError: they differ.
+    """
+    if any(theirs.get(key) != value for key, value in ours.items()):
+        differing = list(_differences(theirs, ours)) or ["made with other widths"]
+        raise UsageError(
+            f"{path}: {'; '.join(differing)}; give the arguments of the run to resume, or train into another "
+            "directory"
+        )
+
+
+def _differences(theirs: State, ours: State) -> Iterator[str]:
+    """Each difference in words, by the name of its option; of a recipe's own values only that they differ."""
+    has = "the checkpoint has"
+    for (part, key), option in OPTIONS.items():
+        mine, other = (_part(config, part).get(key) for config in (ours, theirs))
+        if mine != other:
+            yield f"{option} {mine}, {has} {other}"
+    mine, other = (
+        {key: value for key, value in _part(config, "recipe").items() if ("recipe", key) not in OPTIONS}
+        for config in (ours, theirs)
+    )
+    if mine != other:
+        yield "another --recipe"
+    for key, option in (("seed", "--seed"), ("initial", "--weights")):
+        if ours[key] != (other := theirs.get(key)):
+            yield f"{option} {ours[key]}, {has} {other}"
+    if ours["labels"] != (other := theirs.get("labels")):
+        shown = " ".join(map(str, other)) if isinstance(other, list) else other
+        yield f"the labels {' '.join(ours['labels'])}, {has} {shown}"
+    elif ours["sources"] != theirs.get("sources"):
+        yield "the drawings of --shapes have changed since"
+
+
+def _part(config: State, name: str) -> State:
+    part = config.get(name)
+    return part if isinstance(part, dict) else {}
 
 
 def _has_result(state: State, dimensions: Dimensions) -> bool:

@@ -13,6 +13,7 @@ class Progress:
         iteration: how many are done.
         loss, agreement: means over the last iterations.
         check: targets held, targets and shortfall in the last short measurement; None: none yet.
+        rows: measured rows and all rows of a short measurement that is at work; None: none is.
     """
 
     seed: int
@@ -20,6 +21,7 @@ class Progress:
     loss: float
     agreement: float
     check: tuple[int, int, float] | None
+    rows: tuple[int, int] | None = None
 
 
 Tell = Callable[[Progress], None]

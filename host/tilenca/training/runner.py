@@ -15,10 +15,11 @@ import numpy as np
 import torch
 
 from tilenca.base.errors import InterruptedRunError, TilencaError
-from tilenca.base.signals import SIGNALS, promising
+from tilenca.base.signals import SIGNALS, deaf_to_ctrl_c, promising
 from tilenca.evaluation.evaluator import Evaluator
 from tilenca.evaluation.metrics import least_shares
 from tilenca.evaluation.suites import Suite, make_suite
+from tilenca.evaluation.workload import rows_during_training
 from tilenca.model.file import checkpoint_path
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.sizes import Sizes
@@ -123,16 +124,20 @@ def _advance(
 ) -> Trained:
     recipe, saved, told = job.config.recipe, time.monotonic(), 0.0
     check: tuple[int, int, float] | None = None
+
+    def report(rows: tuple[int, int] | None = None) -> None:
+        tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check, rows))
+
     while not trainer.done:
         trainer.step()
         if suite is not None and (trainer.iteration % recipe.check_every == 0 or trainer.done):
-            check = _check(trainer, suite)
+            check = _check(trainer, suite, report)
         stop = interrupted()
         if stop or time.monotonic() - saved > CHECKPOINT_EVERY_S:
             trainer.save(job.checkpoint)
             saved = time.monotonic()
         if stop or trainer.done or time.monotonic() - told > TELL_EVERY_S:
-            tell(Progress(job.config.seed, trainer.iteration, *trainer.recent(), check))
+            report()
             told = time.monotonic()
         if stop:
             raise InterruptedRunError(f"at iteration {trainer.iteration}")
@@ -146,11 +151,16 @@ def _suite(job: Job) -> Suite:
     return make_suite(job.task, job.sizes, job.config.labels, aims, job.config.seed, CHOOSING)
 
 
-def _check(trainer: Trainer, suite: Suite) -> tuple[int, int, float]:
+def _check(trainer: Trainer, suite: Suite, tell: Callable[[tuple[int, int]], None]) -> tuple[int, int, float]:
     """A short measurement; ends the training when all targets held several times in a row."""
     model, _ = model_of(trainer.now(), {})
+    count = rows_during_training(FastEngine(model), suite)
     for runs in (CHECK_RUNS, CLOSER_RUNS):
-        rows = list(Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows())
+        rows = []
+        tell((0, count))
+        for row in Evaluator(FastEngine(model), suite, runs, trainer.config.seed + runs).short_rows():
+            rows.append(row)
+            tell((len(rows), count))
         if shortfall := sum(row.shortfall for row in rows):
             break
     trainer.measured(shortfall, least_shares(rows))
@@ -220,7 +230,7 @@ class _Processes:
         """Starts the process of a job."""
         ours, theirs = self._context.Pipe(duplex=False)
         process = self._context.Process(target=_in_process, args=(job, theirs), daemon=True)
-        with _deaf_to_ctrl_c():  # until it can save its work, the parent stops it
+        with deaf_to_ctrl_c():  # until it can save its work, the parent stops it
             process.start()
         theirs.close()
         self.running[ours] = process
@@ -251,16 +261,6 @@ class _Processes:
         for process in self.running.values():
             if process.pid is not None and process.is_alive():
                 os.kill(process.pid, signal.SIGTERM)
-
-
-@contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """Processes started in this context ignore Ctrl-C, until they handle it themselves."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _in_process(job: Job, connection: Connection) -> None:

@@ -38,6 +38,8 @@ def event_files(folder: Path, began: str, tell: Tell) -> Iterator[Tell]:
 
     def write(news: Progress) -> None:
         tell(news)
+        if news.rows is not None:
+            return  # a measurement is at work, and nothing was trained meanwhile
         at = news.iteration
         if news.seed not in writers:
             place = folder / FOLDER / f"seed-{news.seed}" / _name(began)

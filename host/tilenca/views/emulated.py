@@ -1,6 +1,7 @@
 """The displays of emulated tiles, and a verdict on them."""
 
 from collections import Counter
+from collections.abc import Iterator, Sequence
 
 from tilenca.emulator.experiment import Emulation
 from tilenca.protocol.sentences import HelloSentence
@@ -28,13 +29,14 @@ def judge(emulation: Emulation, expected: int) -> str:
     return NOT_YET if emulation.fewest_updates() < expected else WRONG
 
 
-def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str:
+def verdict(emulation: Emulation, expected: int = 0, every: bool = False, place: str | None = None) -> str:
     """One line: whether the tiles are right, and since when.
 
     Args:
         emulation: that has ended.
         expected: see `judge`.
-        every: list each tile that shows something else.
+        every: list each tile that shows something else, and those that a fault sets apart.
+        place: of the firmware's model, if that is known.
     """
     name, standing = emulation.shape.name, [tile for tile in emulation.array if tile.powered]
     count = len(standing)
@@ -57,20 +59,39 @@ def verdict(emulation: Emulation, expected: int = 0, every: bool = False) -> str
             f"{name}: not yet, {since}; such a drawing may take {expected}: run on, with --updates {expected}"
         )
     else:
-        model = f" with model {emulation.hello.model_id:04X}" if emulation.hello else ""
+        model = f"; model {emulation.hello.model_id:04X}" if emulation.hello else ""
+        model += f" is {place}" if model and place else ""
         text = f"{name}: WRONG, {shown}{model}{'' if every else '; -v lists them'}"
     if every:
         other = [tile for tile in standing if emulation.shown(tile) != emulation.shape.label]
-        text += f": {', '.join(f'tile {t.index + 1} {_word(emulation.shown(t))}' for t in other)}"
+        text += f": {', '.join(f'tile {t.index + 1} shows {_word(emulation.shown(t))}' for t in other)}"
+        text += "".join(f"; {part}" for part in _faults(emulation))
     return text
 
 
+def _faults(emulation: Emulation) -> Iterator[str]:
+    """The tiles without power, and those that no cable joins to the largest part."""
+    off = [tile.index for tile in emulation.array if not tile.powered]
+    if off:
+        yield f"tile{'s' * (len(off) > 1)} {_numbers(off)} without power"
+    for part in emulation.faults.parts()[1:]:
+        if len(part) == 1:
+            yield f"tile {_numbers(part)} is joined to no other: it answers for itself"
+        else:
+            yield f"tiles {_numbers(part)} are joined to no other: they answer for their part"
+
+
+def _numbers(tiles: Sequence[int]) -> str:
+    return ", ".join(str(tile + 1) for tile in tiles)
+
+
 def counted(emulation: Emulation) -> str:
-    """How many tiles show what, like `26 of 28 tiles show 4, 2 a dash`."""
+    """How many tiles show what, like `26 of 28 tiles show 4, 2 show a dash`."""
     answers = Counter(emulation.answers())
     right = answers.pop(emulation.shape.label, 0)
     first = f"{right} of {right + answers.total()} tiles show {emulation.shape.label}"
-    return ", ".join([first, *(f"{count} {_word(label)}" for label, count in answers.most_common())])
+    others = (f"{count} show{'s' * (count == 1)} {_word(label)}" for label, count in answers.most_common())
+    return ", ".join([first, *others])
 
 
 def _word(label: str) -> str:

@@ -19,7 +19,7 @@ from tilenca.base.stdio import warn
 from tilenca.training.progress import Progress, Tell
 from tilenca.views.curve import Curve
 from tilenca.views.progress import Bars, show_bars
-from tilenca.views.training import TrainingViews, agreement_curve, reached
+from tilenca.views.training import PREPARING, TrainingViews, agreement_curve, reached, row_text
 
 LINE_EVERY_S = 60.0
 TICK_S = 1.0
@@ -58,15 +58,35 @@ class Step:
         if self.began_s is None:
             return self.expected_s
         passed_s = now_s - self.began_s
-        done = 0.0 if self.share is None else self.share - self.first
-        if self.share is not None and passed_s > TRUSTED_S and done > TRUSTED_SHARE:
-            return passed_s * (1 - self.share) / done
+        if self.share is not None and self._has_pace(now_s):
+            return passed_s * (1 - self.share) / (self.share - self.first)
+        if not self.expected_s:
+            return 0.0  # nobody knows
         return max(self.expected_s * (1 - self.first) - passed_s, OVERDUE * passed_s)
+
+    def left_text(self, now_s: float) -> str:
+        """The same in words; nothing where nobody knows, and no number once it takes longer than expected."""
+        if self.began_s is None or self.ended_s is not None:
+            return ""
+        if not self._has_pace(now_s):
+            if not self.expected_s:
+                return ""
+            if now_s - self.began_s > self.expected_s * (1 - self.first):
+                return "longer than estimated"
+        return f"about {time_text(self.left_s(now_s))} left"
+
+    def _has_pace(self, now_s: float) -> bool:
+        """Whether enough of it is done to say from that how long the rest takes."""
+        if self.share is None or self.began_s is None:
+            return False
+        return now_s - self.began_s > TRUSTED_S and self.share - self.first > TRUSTED_SHARE
 
     def done(self, now_s: float) -> float:
         """The share of it that is done; by the time where it does not tell."""
         if self.began_s is None or self.share is not None:
             return self.share or 0.0
+        if not self.expected_s:
+            return 0.0
         passed_s = now_s - self.began_s
         return passed_s / max(passed_s + self.left_s(now_s), 1e-9)
 
@@ -147,7 +167,7 @@ class Steps:
             if step is None:
                 return
             if self.bars is not None:
-                self.bars.move(step.name, step.done(now_s), f"about {time_text(step.left_s(now_s))} left")
+                self.bars.move(step.name, step.done(now_s), step.left_text(now_s))
             elif now_s - self._said_s >= LINE_EVERY_S:
                 words = (self._title(step) + (f": {step.note}" if step.note else ""), self.left())
                 self._say("; ".join(filter(None, words)))
@@ -174,6 +194,7 @@ class Steps:
         def training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
             latest: dict[int, Progress] = {}
             self._curve = agreement_curve(total)
+            self.move(train, f"0 of {total} iterations; {PREPARING}")
 
             def tell(news: Progress) -> None:
                 latest[news.seed] = news
@@ -190,14 +211,15 @@ class Steps:
             self.end(train, "; ".join(_ended(one, total) for one in latest.values()))
 
         @contextmanager
-        def measuring(where: str) -> Iterator[Callable[[str], None]]:
+        def measuring(where: str, count: int) -> Iterator[Callable[[str], None]]:
             rows = 0
             self.begin(measure)
+            self.move(measure, row_text(0, count))
 
             def tell(row: str) -> None:
                 nonlocal rows
                 rows += 1
-                self.move(measure, f"{rows} rows, all of them will be in {where}; {row}")
+                self.move(measure, f"{row_text(rows, count)}, all of them will be in {where}; {row}")
 
             yield tell
 

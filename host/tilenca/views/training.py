@@ -15,6 +15,7 @@ from tilenca.views.curve import Curve
 from tilenca.views.progress import show_bars
 
 LINE_EVERY_S = 60.0  # of each seed, where there is no terminal
+PREPARING = "preparing the drawings that it is trained on and measured with"
 ROWS = 10  # of a measurement per line, likewise
 
 
@@ -31,7 +32,7 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
     lines = partial(curve.lines, console.options.ascii_only)
     with show_bars(console, time=TimeRemainingColumn, below=lines) as bars:
         for seed in seeds:
-            bars.add(f"{seed}", f"seed {seed}", total, f"0/{total}", begun=False)
+            bars.add(f"{seed}", f"seed {seed}", total, f"0/{total}  {PREPARING}", begun=False)
         first: dict[int, tuple[float, int]] = {}
         printed: dict[int, float] = {}
 
@@ -43,7 +44,8 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
             begun, iteration = first[news.seed]
             rate = (news.iteration - iteration) / max(now_s - begun, 1e-9)
             bars.move(f"{news.seed}", news.iteration, f"{news.iteration}/{total}  {_note(news, rate)}")
-            due = now_s - printed.get(news.seed, -LINE_EVERY_S) >= LINE_EVERY_S or news.iteration == total
+            due = news.rows is None and now_s - printed.get(news.seed, -LINE_EVERY_S) >= LINE_EVERY_S
+            due |= news.rows is None and news.iteration == total
             if not console.is_terminal and due:
                 printed[news.seed] = now_s
                 left_s = (total - news.iteration) / rate if rate else None
@@ -54,21 +56,26 @@ def show_training(seeds: Sequence[int], total: int) -> Iterator[Tell]:
 
 
 @contextmanager
-def show_measuring(where: str) -> Iterator[Callable[[str], None]]:
-    """Shows how far the last measurement is, by the rows that it is told; `where` is their file."""
+def show_measuring(where: str, count: int) -> Iterator[Callable[[str], None]]:
+    """Shows how far the last measurement is, by the rows that it is told.
+
+    Args:
+        where: their file.
+        count: of all rows.
+    """
     console = Console(stderr=True)
     begin = f"measuring the model, a minute or a few; every row will be in {where}"
     told = 0
-    with console.status(begin) as status:
+    with console.status(f"{begin}\n{row_text(0, count)}") as status:
         if not console.is_terminal:
             print(begin, file=sys.stderr, flush=True)
 
         def tell(row: str) -> None:
             nonlocal told
             told += 1
-            status.update(f"{begin}\n{told}: {row}")
+            status.update(f"{begin}\n{row_text(told, count)}; {row}")
             if not console.is_terminal and told % ROWS == 0:
-                print(f"{told} rows measured", file=sys.stderr, flush=True)
+                print(row_text(told, count), file=sys.stderr, flush=True)
 
         yield tell
 
@@ -85,9 +92,14 @@ class TrainingViews:
     training: Callable[[Sequence[int], int], AbstractContextManager[Tell]] = field(
         default_factory=lambda: show_training
     )
-    measuring: Callable[[str], AbstractContextManager[Callable[[str], None]]] = field(
+    measuring: Callable[[str, int], AbstractContextManager[Callable[[str], None]]] = field(
         default_factory=lambda: show_measuring
     )
+
+
+def row_text(done: int, count: int) -> str:
+    """How far a measurement is, in words."""
+    return f"{done} of {count} rows measured"
 
 
 def agreement_curve(total: int) -> Curve:
@@ -98,6 +110,8 @@ def agreement_curve(total: int) -> Curve:
 def reached(news: Progress, total: int) -> str:
     """The progress as a sentence, for a person and a log."""
     line = f"{news.iteration} of {total} iterations; all tiles right on {news.agreement:.0%} of the drawings"
+    if news.rows is not None:
+        line += f"; measuring, {row_text(*news.rows)}"
     if news.check is not None:
         held, asked, _ = news.check
         line += f"; on the way {held} of {asked} targets met"
@@ -110,6 +124,8 @@ def _left(news: Progress, left_s: float) -> str:
 
 
 def _note(news: Progress, rate: float) -> str:
+    if news.rows is not None:
+        return f"measuring, {row_text(*news.rows)}"
     note = f"loss {news.loss:.4f}  all right {news.agreement:.1%}  {rate:.0f}/s"
     if news.check is not None:
         held, asked, shortfall = news.check
