@@ -161,7 +161,7 @@ def _are_weights(weights: Any, dimensions: Dimensions) -> bool:
 
 
 def array_like(tensor: torch.Tensor, dtype: np.dtype[Any], row: tuple[int, ...]) -> NDArray[Any]:
-    """(N, *row) of `dtype`: a copy of a tensor of a checkpoint.
+    """A copy of a tensor of a checkpoint: (N,) and then `row`, of `dtype`.
 
     Raises:
         ValueError: it is of another type or form.
