@@ -51,14 +51,14 @@ test("what a page with emulated tiles loads is small", async () => {
 
 test("a library of another version, or with other structures, is refused", async () => {
   const address = new URL("tilenca_simulator.wasm", bundle.address);
-  assert.ok(await Module.load(address, "simulator", 2, { tilenca_model: 28 }));
-  await assert.rejects(Module.load(address, "simulator", 3, {}), /version 2, and this face is for 3/);
-  await assert.rejects(Module.load(address, "simulator", 2, { tilenca_model: 32 }), /another tilenca_model/);
+  assert.ok(await Module.load(address, "simulator", 3, { tilenca_model: 28 }));
+  await assert.rejects(Module.load(address, "simulator", 4, {}), /version 3, and this face is for 4/);
+  await assert.rejects(Module.load(address, "simulator", 3, { tilenca_model: 32 }), /another tilenca_model/);
 });
 
 test("after a refused call for memory the next one has its room", async () => {
   const address = new URL("tilenca_simulator.wasm", bundle.address);
-  const module = await Module.load(address, "simulator", 2, {});
+  const module = await Module.load(address, "simulator", 3, {});
   assert.throws(() => module.begin(0xffffff00), /out of memory/);
   module.begin(100);
   assert.notEqual(module.take(100), 0);
