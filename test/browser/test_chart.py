@@ -63,7 +63,7 @@ def test_a_click_on_the_chart_goes_to_that_time(visit: Visit, server: PageServer
         float(page.locator("#moment").evaluate(f"(one) => one.{name}")) for name in ("min", "max", "value")
     )
     assert (low, high) == (0, 1200)
-    assert abs(value - 300) <= 2
+    assert abs(value - 300) <= 5  # which the clock rounds to 0.30 s
 
 
 def test_changes_of_mind_are_those_until_now(visit: Visit, server: PageServer) -> None:

@@ -74,7 +74,7 @@ def test_a_tile_that_was_looked_into_before_is_told_anew(visit: Visit, server: P
     page.goto(server.url + STANDING)
     page.get_by_role("button", name="Go on").wait_for()
     page.locator("[data-port=tile-05]").click()
-    page.locator(".program summary").press("Space")
+    page.locator(".program summary").press("Enter")
     page.locator(".program [role=status]", has_text="Next: 0x").wait_for()
     before = clocked(page)
     page.locator("[data-port=tile-06]").click()

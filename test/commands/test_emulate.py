@@ -162,7 +162,7 @@ def test_tiles_that_show_something_else_are_wrong_once_they_had_their_time(
     status, out, _ = emulate(capsys, "--shape", "1", "--seconds", "0.001", "-v")  # nothing is shown yet
     assert status == 1
     assert "1: not yet, 5 of 5 tiles have done no update" in out
-    assert "with --updates 60: tile 1 nothing, tile 2 nothing" in out
+    assert "with --updates 60: tile 1 shows nothing, tile 2 shows nothing" in out
 
 
 def test_an_unknown_shape_is_told_which_there_are(capsys: pytest.CaptureFixture[str]) -> None:

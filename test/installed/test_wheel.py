@@ -79,7 +79,11 @@ def test_it_carries_the_data_and_nothing_by_the_way(wheel: Path) -> None:
     carried = {name for name in names(wheel) if ".dist-info/" not in name}
     checkout = {str(path.relative_to(paths.ROOT)) for path in paths.SHAPES.glob("*.toml")}
     for model in paths.MODELS.iterdir():
-        checkout |= {str(path.relative_to(paths.ROOT)) for path in model.iterdir() if path.suffix != ".png"}
+        checkout |= {
+            str(path.relative_to(paths.ROOT))
+            for path in model.iterdir()
+            if path.is_file() and path.suffix != ".png"
+        }
     for part in ("include", "src"):
         files = (path for path in (paths.FIRMWARE / part).rglob("*") if path.is_file())
         checkout |= {str(path.relative_to(paths.ROOT)) for path in files}

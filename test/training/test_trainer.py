@@ -33,7 +33,7 @@ def test_a_training_that_begins_with_weights_of_a_model_goes_on_from_them(tmp_pa
     for name, weights in second.net.arrays().items():
         assert np.array_equal(weights, model.floats[name])
     second.save(job.checkpoint)
-    with pytest.raises(UsageError, match="another initial"):
+    with pytest.raises(UsageError, match="--weights None, the checkpoint has"):
         trained_at(job.checkpoint, replace(job.config, initial=None))
 
 
