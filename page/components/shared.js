@@ -13,6 +13,8 @@ export class SharedRun {
     this.send = send;
     this.runs = -1;
     this.isGone = false;
+    /** Whether it has come to its end: its time is told before it stands. */
+    this.hasEnded = false;
     /** The speed before it hurried to the end. @type {number | null} */
     this.before = null;
     this.words = element("span", { role: "status" });
@@ -31,13 +33,14 @@ export class SharedRun {
   update() {
     const { tiles, run } = this;
     const end = run.hasBegun ? run.sharedEnd : null;
-    if (tiles.runs !== this.runs) Object.assign(this, { runs: tiles.runs, isGone: false, before: null });
+    if (tiles.runs !== this.runs) Object.assign(this, { runs: tiles.runs, isGone: false, hasEnded: false, before: null });
     const isOver = !run.isBeforeEnd;
     if (end !== null && isOver && this.before !== null) {
       this.send({ do: "pace", speed: this.before, paused: true });
       this.before = null;
     }
-    this.isGone ||= isOver && !tiles.pace.paused && this.before === null && tiles.pace.speed > 0;
+    this.hasEnded ||= isOver && (tiles.pace.paused || run.opened?.until == null);
+    this.isGone ||= this.hasEnded && isOver && !tiles.pace.paused && this.before === null && tiles.pace.speed > 0;
     const isShown = end !== null && !this.isGone;
     this.root.hidden = !isShown;
     document.body.toggleAttribute("data-shared", isShown && !isOver);
