@@ -81,8 +81,8 @@ TILENCA_API const char* tilenca_emulator_last_error(void);
 // --- arrays ---
 
 // Tiles that run an ELF or Intel HEX file. `bootloader`: a file for the boot section, where the chips then
-// start after every reset; null: none. `ppm` [tiles]: each tile's clock error. `switch_on_s` [tiles]: 0 to 1e9.
-// Free the result with tilenca_array_free.
+// start after every reset; null: none. `ppm` [tiles]: each tile's clock error. `switch_on_s` [tiles]: 0 to
+// 1e9. Free the result with tilenca_array_free.
 TILENCA_API tilenca_array* tilenca_array_new(const char* image, const char* bootloader, unsigned tiles,
                                              const double* ppm, const double* switch_on_s);
 // Null is allowed.

@@ -107,8 +107,7 @@ std::string places() {
            define("AT_REQUESTS", offsetof(avr::Cpu, requests)) +
            define("AT_TRANSFER", offsetof(avr::Cpu, transfer)) +
            define("AT_INTERRUPTS", offsetof(avr::Cpu, interrupts_on)) +
-           define("AT_SPECIAL", offsetof(avr::Cpu, special)) +
-           define("AT_FLASH", offsetof(avr::Cpu, flash)) +
+           define("AT_SPECIAL", offsetof(avr::Cpu, special)) + define("AT_FLASH", offsetof(avr::Cpu, flash)) +
            define("AT_FLASH_LIMIT", offsetof(avr::Cpu, flash_limit)) +
            define("AT_PROGRAM", offsetof(avr::Cpu, program)) +
            define("AT_STACK_LOW", offsetof(avr::Cpu, stack_low)) +
