@@ -89,6 +89,16 @@ def _fresh(browser: Browser) -> Iterator[tuple[Page, list[str]]]:
         context.close()
 
 
+@contextmanager
+def _running(browser: Browser, url: str, drawing: str, speed: float) -> Iterator[Page]:
+    """A fresh page on which tiles have run for a while; see `watch`."""
+    with _fresh(browser) as (page, _):
+        page.goto(f"{url}?draw={drawing}&speed={speed}&seed=1")
+        page.locator(".tile").first.wait_for()
+        page.wait_for_timeout(WARM_UP_MS)
+        yield page
+
+
 def load(browser: Browser, url: str) -> tuple[float, float, int]:
     """Opens the page once.
 
@@ -113,10 +123,7 @@ def watch(browser: Browser, url: str, drawing: str, speed: float) -> Frames:
         drawing: as the page's address has it.
         speed: of the tiles' time against a clock on the wall.
     """
-    with _fresh(browser) as (page, _):
-        page.goto(f"{url}?draw={drawing}&speed={speed}&seed=1")
-        page.locator(".tile").first.wait_for()
-        page.wait_for_timeout(WARM_UP_MS)
+    with _running(browser, url, drawing, speed) as page:
         page.evaluate("probe.frames.length = 0")
         page.wait_for_timeout(WATCHED_MS)
         lasted: list[float] = page.evaluate("probe.frames")
@@ -127,10 +134,7 @@ def watch(browser: Browser, url: str, drawing: str, speed: float) -> Frames:
 
 def click(browser: Browser, url: str) -> list[float]:
     """Milliseconds from a press on an empty place to its tile, while twenty tiles run in real time."""
-    with _fresh(browser) as (page, _):
-        page.goto(f"{url}?draw={TWENTY}&speed=1&seed=1")
-        page.locator(".tile").first.wait_for()
-        page.wait_for_timeout(WARM_UP_MS)
+    with _running(browser, url, TWENTY, 1) as page:
         page.get_by_role("button", name="Draw", exact=True).click()
         for done in range(CLICKS):
             page.locator(".spot").first.click()
