@@ -22,14 +22,8 @@ TILE_IN, GAP_IN, TITLE_IN, CAPTION_IN, MARGIN_IN = 0.3, 0.32, 0.72, 0.45, 0.15
 LEAST_PANEL_IN = 0.85
 LEAST_COLUMNS = 5
 CHARACTER_EM = 0.6  # a character is no wider in the mean
-GIF_TILE_IN, GIF_WIDEST_IN, GIF_TALLEST_IN, GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = (
-    0.7,
-    7.0,
-    14.0,
-    5.2,
-    0.4,
-    100,
-)
+GIF_TILE_IN, GIF_WIDEST_IN, GIF_TALLEST_IN = 0.7, 7.0, 14.0
+GIF_WIDTH_IN, GIF_CAPTION_IN, GIF_DPI = 5.2, 0.4, 100
 CLEAR = 255  # the index of what stays as it was
 
 DARK, DARK_EDGE = "#3a3f47", "#2b2f36"
