@@ -3,7 +3,9 @@
 import os
 import signal
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -13,6 +15,9 @@ from support.avr import arduino, arduino_core, avr, talk
 from support.firmware import firmware
 from support.order import rank
 from support.terminal import pty
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 __all__ = ["arduino", "arduino_core", "avr", "firmware", "pty", "talk"]  # fixtures for every room
 
@@ -44,6 +49,15 @@ def pytest_configure() -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Puts files with long tests first; all others keep their order."""
     items.sort(key=lambda item: rank(item.path))
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator["Browser"]:
+    """One for all tests of a process: Playwright refuses a second one beside it."""
+    from support.browser import running_browser  # imports Playwright, which most tests do without
+
+    with running_browser() as running:
+        yield running
 
 
 @pytest.fixture(scope="session")

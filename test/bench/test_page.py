@@ -7,14 +7,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from bench import page as bench
-from support.browser import running_browser
 from support.page_server import page_server
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with running_browser() as running:
-        yield running
 
 
 @pytest.fixture(scope="module")

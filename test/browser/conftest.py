@@ -7,18 +7,12 @@ import pytest
 from playwright.sync_api import Browser
 
 from release.page_bundle import lay_out
-from support.browser import Visit, new_visit, running_browser
+from support.browser import Visit, new_visit
 from support.page_server import PageServer, page_server
 from support.static_server import static_server
 from tilenca.base import paths
 
 WEB = paths.BUILD / "web" / "bundle"
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with running_browser() as running:
-        yield running
 
 
 @pytest.fixture(scope="module")

@@ -22,6 +22,7 @@ def test_a_model_is_chosen_built_and_named_by_the_address(visit: Visit) -> None:
         page.goto(f"{server.url}?model=64EB&shape=pentominoes/X&speed=0.5&spread=0.1")
         visit.wait_for_verdict("All 5 tiles show X")
         assert page.input_value("#model") == "pentominoes"
+        page.goto("about:blank")  # else it looks for the server that ends
 
 
 def test_a_model_that_cannot_be_built_says_why_and_another_one_is_the_way_on(

@@ -25,7 +25,8 @@ def test_opened_it_runs_and_the_tiles_agree(visit: Visit, server: PageServer) ->
     assert visit.page.locator(".tile").count() == 16
     label = visit.page.locator("[data-port=tile-01]").get_attribute("aria-label")
     assert label == "Tile 1, row 1, column 1, shows 8, linked east, south"
-    assert re.search(r"100 % agree, \d+ changes of mind", visit.page.inner_text("#agreement-text"))
+    agreement = re.compile(r"100 % agree, \d+ changes of mind")
+    visit.page.locator("#agreement-text", has_text=agreement).wait_for()
     assert visit.page.url.startswith(f"{server.url}?shape=digits/8&seed=0&speed=0.1&model=")
 
 
