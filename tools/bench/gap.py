@@ -130,7 +130,9 @@ def period_of(image: Image) -> float:
     return image.defaults.period_ms if image.defaults else DEFAULT_PERIOD_MS
 
 
-def emulate(image: Image, drawings: Drawings, runs: int, seed: int) -> list[EmulatedTiles]:
+def emulate(
+    image: Image, drawings: Drawings, runs: int, seed: int, steps: int = STEPS
+) -> list[EmulatedTiles]:
     """Runs emulated tiles, as many runs at once as there are processors; shows its progress.
 
     Args:
@@ -138,6 +140,7 @@ def emulate(image: Image, drawings: Drawings, runs: int, seed: int) -> list[Emul
         drawings: they take turns.
         runs: how many.
         seed: of the benchmark.
+        steps: updates of a run.
 
     Raises:
         TilencaError: the image has another model, or a tile stopped at a fault.
@@ -152,7 +155,7 @@ def emulate(image: Image, drawings: Drawings, runs: int, seed: int) -> list[Emul
             if stopped.is_set():
                 raise KeyboardInterrupt
 
-        settings = EmulationSettings(updates=STEPS, seed=seed * SEEDS + number)
+        settings = EmulationSettings(updates=steps, seed=seed * SEEDS + number)
         done = run_emulated(image, drawings.shapes[drawing], settings, look)
         ppm, switch_on_s = tuple(seen[0].ppm), tuple(seen[0].switch_on_s)
         return EmulatedTiles(drawing, ppm, switch_on_s, done.converged_at)
@@ -166,7 +169,12 @@ def emulate(image: Image, drawings: Drawings, runs: int, seed: int) -> list[Emul
 
 
 def simulate(
-    model: Model, drawings: Drawings, tiles: Sequence[EmulatedTiles], times: TileTimes, period_ms: float
+    model: Model,
+    drawings: Drawings,
+    tiles: Sequence[EmulatedTiles],
+    times: TileTimes,
+    period_ms: float,
+    steps: int = STEPS,
 ) -> Steps:
     """The same runs in the simulator; (R,) the step from which each stays right, infinite for none.
 
@@ -176,6 +184,7 @@ def simulate(
         tiles: R runs.
         times: of tiles.
         period_ms: of an update.
+        steps: updates of a run.
     """
     batch = drawings.batch(np.array([run.drawing for run in tiles]))
     cells, runs = len(batch.sample), len(tiles)
@@ -198,7 +207,7 @@ def simulate(
         changes=NO_SWITCHES,
     )
     states, shown = FastEngine(model).seed(cells), np.full(cells, DARK, np.int8)
-    right = np.empty((STEPS, runs), np.float32)
+    right = np.empty((steps, runs), np.float32)
     CompiledRollout(model, setup, states, shown).run(right, None, processors())
     return Trajectory(right).converged_at
 
@@ -221,12 +230,12 @@ def _clocks(
     return Clocks(first, made.period, made.latency, start, made.seed_latency, made.line)
 
 
-def measure(image: Image, drawings: Drawings, runs: int, seed: int) -> Pairs:
+def measure(image: Image, drawings: Drawings, runs: int, seed: int, steps: int = STEPS) -> Pairs:
     """Does all runs twice; see `emulate`."""
     period = period_of(image)
-    tiles = emulate(image, drawings, runs, seed)
+    tiles = emulate(image, drawings, runs, seed, steps)
     times = tile_times(image.model.dimensions, period)
-    simulator = simulate(image.model, drawings, tiles, times, period)
+    simulator = simulate(image.model, drawings, tiles, times, period, steps)
     return Pairs(np.array([run.converged_at for run in tiles]), simulator)
 
 
