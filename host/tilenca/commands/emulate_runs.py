@@ -72,12 +72,12 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
     notes += _too_late(emulation)
     expected = 0 if args.foreign else updates_for(emulation.shape)
-    if args.own_model is None and (remedy := mismatch(emulation, task)):
+    if args.own_model is None and (remedy := mismatch(emulation, task, args.trained)):
         notes.append(remedy)
         expected = 0  # more time would not help
     judged = judge(emulation, expected)
     if judged == WRONG and args.own_model is not None and not (args.foreign or args.fault):
-        notes.append(why_wrong(args.own_model, task))
+        notes.append(why_wrong(args.own_model, task, args.size))
     if args.others and args.own_model is not None and not args.foreign:
         notes.append(_of_one_run(args, task))
     report = emulation.report(time.monotonic() - started) | {"verdict": judged}
