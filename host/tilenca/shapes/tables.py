@@ -108,7 +108,7 @@ class Table:
                 here = f"{len(row)} character{'s' * (len(row) != 1)}"
                 mistakes.add(
                     f"{where}: {self.name} has ragged rows (here {here}, elsewhere {usual}); "
-                    "make all rows equally long"
+                    "fill the short ones up with '.'"
                 )
         mistakes.refuse()
 
