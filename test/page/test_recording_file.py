@@ -79,6 +79,11 @@ def check(page: PageNode, text: str) -> None:
     assert is_taken(text) == (what == "shown"), told
 
 
+def test_one_of_record_is_told_as_such(page: PageNode) -> None:
+    first = {"time": 1, "port": "tile-01", "place": [0, 0], "tile": 1, "shape": "4"}
+    assert page.ask(json.dumps(first))["refused"].startswith("it is of --record, and not of the page")
+
+
 def is_taken(text: str) -> bool:
     """Whether `tilenca page --replay` takes a recording of the page."""
     try:

@@ -73,7 +73,7 @@ def test_a_recording_has_a_picture_whenever_something_is_new(tmp_path: Path) -> 
     assert reel.pictures[1].seconds == MOST_S
     assert reel.pictures[2].seconds == pytest.approx(LEAST_S)
     assert reel.agreed_at is None
-    assert reel.title == "2 tiles: 1 show nothing, 1 show 4"
+    assert reel.title == "2 tiles: 1 shows nothing, 1 shows 4"
     assert reel.about == "r.jsonl, 4.0 s recorded"
 
 

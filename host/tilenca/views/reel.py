@@ -138,7 +138,10 @@ def _staying(last: Picture) -> Picture:
 def _verdict(pictures: Sequence[Picture], agreed_at: int | None) -> str:
     last = Counter(look.label or "nothing" for look in pictures[-1].looks if look is not None)
     if agreed_at is None:
-        return ", ".join(f"{count} show {label}" for label, count in last.most_common()) or "all silent"
+        return (
+            ", ".join(f"{count} show{'s' * (count == 1)} {label}" for label, count in last.most_common())
+            or "all silent"
+        )
     return f"all show {next(iter(last))} from {pictures[agreed_at].caption}"
 
 
