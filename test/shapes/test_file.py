@@ -123,7 +123,7 @@ def test_all_mistakes_are_named_at_once(tmp_path: Path) -> None:
     text += shape("1", "#") + "[forms]\nT = [0]\n"
     path = write(tmp_path, text)
     assert [line.removeprefix(f"{path}:").partition(";")[0] for line in refusals(path)] == [
-        " unknown key 'size' (did you mean 'sizes'?)",
+        "1: unknown key 'size' (did you mean 'sizes'?)",
         "3: label 'T'",
         "6: shape 'T' has ragged rows (here 1 character, elsewhere 2)",
         "8: unknown key 'lable' (did you mean 'label'?)",

@@ -140,9 +140,10 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     with mistakes.gathered():
         kind = read_orientations(path, document.pop("orientations", None))
     for key in document:
+        where, meant = f"{path}{_line_of(text, key)}", did_you_mean(key, KEYS)
         mistakes.add(
-            f"{path}: unknown key {key!r}{did_you_mean(key, KEYS)}; a shape file has [[shape]] tables, "
-            "[sizes], [vary], [forms] and orientations"
+            f"{where}: unknown key {key!r}{meant}; a shape file has [[shape]] tables, [sizes], [vary], [forms] "
+            "and orientations"
         )
     if not isinstance(entries, list) or not entries or not all(isinstance(entry, dict) for entry in entries):
         mistakes.add(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
@@ -156,6 +157,13 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
         (label, other) for label, skeleton in found for other in orientations_of_skeleton(skeleton, kind)
     )
     return replace(_in_all(drawn, kind), sizes=sizes, vary=vary, forms=skeletons)
+
+
+def _line_of(text: str, key: str) -> str:
+    """The line of a key or table of that name, as a message has it; nothing where it is written unusually."""
+    begins = re.compile(rf"\s*\[*\s*[\"']?{re.escape(key)}[\"']?\s*[\]=.]")
+    lines = (number for number, line in enumerate(text.split("\n"), start=1) if begins.match(line))
+    return f":{line}" if (line := next(lines, 0)) else ""
 
 
 def _read(path: Path) -> tuple[str, dict[str, Any]]:
