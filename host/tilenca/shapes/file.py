@@ -142,8 +142,8 @@ def load_task(path: Path, max_classes: int | None = None) -> Task:
     for key in document:
         where, meant = f"{path}{_line_of(text, key)}", did_you_mean(key, KEYS)
         mistakes.add(
-            f"{where}: unknown key {key!r}{meant}; a shape file has [[shape]] tables, [sizes], [vary], [forms] "
-            "and orientations"
+            f"{where}: unknown key {key!r}{meant}; a shape file has [[shape]] tables, [sizes], [vary], "
+            "[forms] and orientations"
         )
     if not isinstance(entries, list) or not entries or not all(isinstance(entry, dict) for entry in entries):
         mistakes.add(f"{path}: no shapes; add [[shape]] tables with a label and a grid")
