@@ -1,5 +1,5 @@
 # PYTHON_ARGCOMPLETE_OK
-"""The `tilenca` command: finds the subcommand, runs it, and turns failures into one line and an exit status.
+"""The `tilenca` command: finds the subcommand, runs it, and turns failures into a line and an exit status.
 
 A subcommand is a module with a one-line docstring (its help), `add_arguments(parser)` and `run(args) -> int`.
 Only the chosen module is imported, so that commands which need no torch never wait for it.
@@ -85,7 +85,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             finish_streams()
         return status
     except TilencaError as error:
-        warn(f"tilenca: {error}")
+        for line in str(error).split("\n"):
+            warn(f"tilenca: {line}")
         return error.exit_status
     except KeyboardInterrupt:
         warn("tilenca: interrupted")

@@ -1,4 +1,5 @@
 // The file of a recording (docs/PROTOCOL.md section 7): every event is checked before anything of it is shown.
+// Its twin is host/tilenca/page/recording_file.py.
 
 /** @import { StreamEvent } from "./source.js" */
 import { SIDES, STREAM_VERSION } from "./source.js";
@@ -103,14 +104,14 @@ export function parseRecording(text) {
   let isCut = false;
   for (const line of lines) {
     number++;
-    if (line.trim() === "") continue;
+    if (/^[ \t\r]*$/.test(line)) continue;
     const event = parsed(line);
     isCut = event === null && number === lines.length && number > BEGINNING;
     if (isCut) break;
-    if (number === 1 && isObject(event) && (event.raw !== undefined || event.open !== undefined)) {
+    if (events.length === 0 && isObject(event) && event.port !== undefined) {
       throw new Error("it is of --record, and not of the page: tilenca page --replay shows it");
     }
-    if (number === 1 && isObject(event) && event.stream !== undefined && event.stream !== STREAM_VERSION) {
+    if (events.length === 0 && isObject(event) && event.stream !== undefined && event.stream !== STREAM_VERSION) {
       throw new Error(`it has version ${event.stream} of the stream, this page ${STREAM_VERSION}`);
     }
     const wrong = wrongWith(event);

@@ -53,6 +53,13 @@ def test_what_the_user_has_comes_first(elsewhere: Path) -> None:
     assert shipped.model_folder("models/hex") == paths.MODELS / "hex"
 
 
+def test_a_model_in_the_folder_models_here_has_a_short_name_too(elsewhere: Path) -> None:
+    (elsewhere / "models" / "mine").mkdir(parents=True)
+    assert shipped.model_folder("mine") == Path("mine"), "no model is in it"
+    (elsewhere / "models" / "mine" / "model.json").touch()
+    assert shipped.model_folder("mine") == Path("models/mine")
+
+
 def test_a_wrong_name_is_answered_with_the_right_ones() -> None:
     with pytest.raises(UsageError, match=r"^hexx: No such file .* one of: digits .*\bhex\b.* pentominoes$"):
         load_task(shipped.shapes_file("hexx"))

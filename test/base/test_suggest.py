@@ -13,6 +13,7 @@ from tilenca.training.recipes import find_recipe
 def test_the_closest_word_is_offered_and_none_where_nothing_is_close() -> None:
     assert did_you_mean("thicknes", ["slant", "thickness"]) == " (did you mean 'thickness'?)"
     assert did_you_mean("paper", ["slant", "thickness"]) == ""
+    assert did_you_mean("l", ["t", "L"]) == " (did you mean 'L'?)"
 
 
 @pytest.mark.parametrize(

@@ -149,8 +149,9 @@ def test_a_recording_can_be_replayed(capsys: pytest.CaptureFixture[str], tmp_pat
     lines = [json.loads(line) for line in record.read_text().splitlines()]
     assert {line["tile"] for line in lines} == {1, 2, 3, 4, 5}
     assert [line["time"] for line in lines] == sorted(line["time"] for line in lines)
-    assert sum("$HELLO" in line["raw"] for line in lines) == 5
-    assert len(list(read_recording(record))) == len(lines)
+    assert [line["place"] for line in lines[:5]] == [[row, 0] for row in range(5)]
+    assert sum("$HELLO" in line["raw"] for line in lines[5:]) == 5
+    assert len(list(read_recording(record))) == len(lines[5:])
 
 
 def test_tiles_that_show_something_else_are_wrong_once_they_had_their_time(

@@ -46,6 +46,7 @@ def test_drawings_become_tiles_and_a_second_time_only_what_is_missing_is_done(
     for number, name in enumerate(STEPS, start=1):
         assert f"[{number}/5] {name}" in said.err
     assert re.search(r"\[2/5\] train; at most \d+ (s|min) left, less if the targets hold early", said.err)
+    assert re.search(r"estimated on .*processors?: train at most .*, build about .*, emulate about", said.err)
     assert re.search(r"\[3/5\] measure done in \d+ s: \d+ of \d+ targets held", said.err)
     assert f"for real tiles: tilenca flash --model {out}" in said.err
     assert "not well enough: " in said.out

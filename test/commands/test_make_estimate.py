@@ -70,6 +70,21 @@ def test_measuring_takes_longer_the_more_runs_and_the_slower_the_machine(
     assert pace.factor > 0.0
 
 
+def test_emulating_takes_longer_the_more_tiles_and_the_slower_the_machine(
+    two_shapes: Path, tmp_path: Path, firmware: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    args = asked(two_shapes, tmp_path)
+    plan, more = make_plan(args), make_plan(asked(paths.DEFAULT_SHAPES, tmp_path))
+    monkeypatch.setattr(paths, "firmware_elf", lambda: tmp_path / "none")
+    guessed = emulating_s(args, plan, Pace(1e-6, 1.0))
+    assert guessed < emulating_s(args, more, Pace(1e-6, 1.0))
+    assert emulating_s(args, plan, Pace(1e-6, 3.0)) == pytest.approx(3 * guessed)
+    monkeypatch.setattr(paths, "firmware_elf", lambda: firmware)
+    timed = emulating_s(args, plan, Pace(1e-6, 1.0))
+    assert make_estimate.EMULATE_S < timed < 60
+    assert timed != guessed
+
+
 def test_a_firmware_that_was_built_in_the_folder_before_is_built_sooner(tmp_path: Path) -> None:
     args = Namespace(out=tmp_path)
     cold = building_s(args, Pace(1e-6, 1.0))
@@ -78,11 +93,3 @@ def test_a_firmware_that_was_built_in_the_folder_before_is_built_sooner(tmp_path
     image.touch()
     assert building_s(args, Pace(1e-6, 1.0)) < cold
     assert building_s(args, Pace(1e-6, 4.0)) == 4 * building_s(args, Pace(1e-6, 1.0))
-
-
-def test_more_and_larger_drawings_are_emulated_longer(two_shapes: Path, tmp_path: Path) -> None:
-    few, many = (
-        emulating_s(make_plan(asked(path, tmp_path)), Pace(1e-6, 1.0))
-        for path in (two_shapes, paths.DEFAULT_SHAPES)
-    )
-    assert few < many

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.commands.origin import (
+    folder_of,
     model_with_id,
     own_drawings,
     own_shapes,
@@ -136,6 +137,20 @@ def test_an_unknown_id_has_no_model_and_a_folder_may_be_asked_first(tmp_path: Pa
     assert found[1] == tmp_path
 
 
+def test_the_model_of_a_file_is_found_by_what_the_file_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "mine.toml"
+    file.write_text(shape_table("4", ["#.", "##"]), encoding="utf-8")
+    task = load_task(file)
+    assert folder_of(task) is None
+    sha256 = hashlib.sha256(file.read_bytes()).hexdigest()
+    made_of({"sources": [{"file": "other.toml", "sha256": sha256}]}).save(tmp_path / "models" / "mine")
+    assert folder_of(task) == Path("models/mine")
+    assert folder_of(load_task(paths.DEFAULT_SHAPES.with_name("letters.toml"))) == paths.MODELS / "letters"
+
+
 def test_a_model_without_a_dash_says_so() -> None:
     assert without_a_dash(DIGITS) is None
     pentominoes = load_model(paths.MODELS / "pentominoes")
@@ -146,6 +161,10 @@ def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tm
     model, own = DIGITS, load_task(paths.DEFAULT_SHAPES)
     ours = f"{model.model_id:04X}"
     assert "was made of this file, and does not hold it" in why_wrong(model, own)
+    assert "and does not hold it" in why_wrong(model, own, (7, 6))
+    assert "was made of this file, and never trained at 24x20; give the file [sizes]" in why_wrong(
+        model, own, (24, 20)
+    )
     (tmp_path / "mine.toml").write_text(shape_table("4", ["#.", "##"]), encoding="utf-8")
     told = why_wrong(model, load_task(tmp_path / "mine.toml"))
     assert told.startswith(f"model {ours} was made of digits.toml digits-3x3.toml, and takes these for")

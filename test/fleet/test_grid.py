@@ -1,7 +1,9 @@
 """The monitor's picture: every tile in its place, with what it shows and how its links do."""
 
 from support.heard_fleet import STATE, HeardFleet, link, three_in_an_l
-from tilenca.fleet.grid import Grid, Mark
+from tilenca.fleet.boards import Board, Found
+from tilenca.fleet.grid import Grid, Laid, Mark
+from tilenca.fleet.ports import Port
 from tilenca.fleet.state import PortNews
 from tilenca.fleet.tiles_file import Place
 from tilenca.protocol.sentences import (
@@ -24,6 +26,33 @@ def test_the_file_says_where_tiles_lie_and_which_are_missing() -> None:
     grid = Grid(places).cells(three_in_an_l().fleet, 1.5)
     assert {place: cell.tile for place, cell in grid.items()} == {(0, 3): 1, (1, 3): 2, (2, 3): 9, (3, 0): 3}
     assert grid[2, 3].trouble == "no port"
+
+
+def test_a_recording_says_where_tiles_lie_before_the_file_and_the_tiles() -> None:
+    fleet = three_in_an_l().fleet
+    grid = Grid([Place(1, "port:a", 0, 3)])
+    for column, port in enumerate("abx"):
+        grid.lay(port, Laid((5, column), column + 1))
+    cells = grid.cells(fleet, 1.5)
+    assert {place: cell.tile for place, cell in cells.items()} == {(5, 0): 1, (5, 1): 2, (5, 2): 3, (6, 0): 3}
+    assert (cells[5, 2].trouble, cells[5, 2].port) == ("silent", "x"), "it never spoke"
+    grid.lay("c", Laid((5, 2), 3))
+    assert len(grid.cells(fleet, 1.5)) == 3, "where it lies now nobody else does"
+    grid.lay("c", None)
+    assert {cell.port for cell in grid.cells(fleet, 1.5).values()} == {"a", "b"}
+
+
+def test_what_the_file_says_is_known_of_the_boards_that_are_there() -> None:
+    places = [Place(1, "port:a", 0, 3), Place(2, "port:b", 1, 3)]
+    grid = Grid(places)
+    grid.know(Found([Board(Port("a"), "port:a", places[0]), Board(Port("x"), "port:x")]))
+    assert grid.known() == {"a": Laid((0, 3), 1)}
+
+
+def test_a_file_that_was_given_counts_more_than_a_recording() -> None:
+    grid = Grid([Place(1, "port:a", 0, 3)], given=True)
+    grid.lay("a", Laid((5, 5), 1))
+    assert grid.cells(three_in_an_l().fleet, 1.5)[0, 3].tile == 1
 
 
 def test_a_link_that_should_be_there_is_marked_dead() -> None:

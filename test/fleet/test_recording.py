@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 from support.refusal import read_or_refused
 from support.strategies import damaged
 from tilenca.base.errors import UsageError
-from tilenca.fleet.recording import Recorder, format_event, parse_event, read_recording, recorded_shapes
+from tilenca.fleet.grid import Laid
+from tilenca.fleet.recording import (
+    Choice,
+    Recorder,
+    format_event,
+    parse_event,
+    read_recording,
+    recorded_shapes,
+)
 from tilenca.fleet.state import Event, PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import parse_sentence
@@ -29,6 +37,24 @@ def test_an_event_is_read_back_as_it_was(event: Event) -> None:
     assert parse_event(line) == event
 
 
+def test_places_are_written_as_far_as_they_are_news_and_read_in_their_order(tmp_path: Path) -> None:
+    path = tmp_path / "record"
+    said = format_event(Heard(2.0, "a", b"$ASK*59", None))
+    with Recorder(path, "w") as record:
+        for laid in ({"a": Laid((0, 1), 7), "b": Laid((0, 2), 9)}, {"a": Laid((0, 1), 7)}):
+            record.place(2.0, laid, shape="4")
+            record.place(2.5, laid, shape="4")
+            record.write([said])
+    assert recorded_shapes(path) == ["4"]
+    told: list[object] = []
+    for event in read_recording(path, lambda port, laid: told.append((port, laid))):
+        told.append(event.port)
+    assert told == [("a", Laid((0, 1), 7)), ("b", Laid((0, 2), 9)), "a", ("b", None), "a"]
+    told.clear()
+    list(Choice(path, ["b"], lambda port, laid: told.append(port)))
+    assert told == ["b", "b"]
+
+
 @given(st.text())
 def test_any_other_line_is_a_value_error_or_an_event(line: str) -> None:
     try:
@@ -38,7 +64,17 @@ def test_any_other_line_is_a_value_error_or_an_event(line: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["{}", "[]", "1", "not json", '{"time": 1, "port": "p"}', '{"time": "1", "port": "p", "raw": ""}']
+    "line",
+    [
+        "{}",
+        "[]",
+        "1",
+        "not json",
+        '{"time": 1, "port": "p"}',
+        '{"time": "1", "port": "p", "raw": ""}',
+        '{"time": 1, "port": "p", "place": [0, 1.0]}',
+        '{"time": 1, "port": "p", "place": [0, 1], "tile": 0}',
+    ],
 )
 def test_a_bad_line_is_named(line: str, tmp_path: Path) -> None:
     path = tmp_path / "record"

@@ -1,7 +1,11 @@
-"""The recordings that the page reads: any text is shown to its end, or refused with a reason."""
+"""The recordings that the page reads: any text is shown to its end, or refused with a reason, by the page and
+by the command that hands it one.
+"""
 
+import io
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +14,8 @@ from hypothesis import strategies as st
 
 from support.page_node import PageNode
 from support.strategies import damaged
+from tilenca.base.errors import UsageError
+from tilenca.page.recording_file import check_recording
 
 READ = """
 import { parseRecording } from "./stream/recording_file.js";
@@ -70,10 +76,26 @@ def check(page: PageNode, text: str) -> None:
     [(what, told)] = page.ask(text).items()
     assert what in ("shown", "refused"), told
     assert what == "shown" or (0 < len(told) < 200 and "\n" not in told), told
+    assert is_taken(text) == (what == "shown"), told
+
+
+def test_one_of_record_is_told_as_such(page: PageNode) -> None:
+    first = {"time": 1, "port": "tile-01", "place": [0, 0], "tile": 1, "shape": "4"}
+    assert page.ask(json.dumps(first))["refused"].startswith("it is of --record, and not of the page")
+
+
+def is_taken(text: str) -> bool:
+    """Whether `tilenca page --replay` takes a recording of the page."""
+    try:
+        check_recording(Path("r.jsonl"), io.StringIO(text, newline="\n").readlines())
+    except UsageError:
+        return False
+    return True
 
 
 def test_a_recording_with_every_kind_of_event_is_shown(page: PageNode) -> None:
     assert page.ask(WHOLE) == {"shown": len(EVENTS)}
+    assert is_taken(WHOLE)
 
 
 @settings(max_examples=300)

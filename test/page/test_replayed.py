@@ -74,6 +74,7 @@ def test_one_of_the_page_stays_as_it_is(tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("", "nothing is recorded"),
+        ('{"time": 0, "stream": true}\n', "version True of the stream"),
         ("hello\n", "not a recorded event"),
         ('{"time": 0, "stream": 9}\n', "version 9 of the stream"),
         ("\u00e9\n", "not a recording"),
@@ -106,11 +107,14 @@ def test_one_of_the_page_that_is_cut_loses_its_last_line_only(
     [
         ("nonsense", "3: is no event"),
         ("[]", "3: is no event"),
-        ('{"time": 1e8, "pace": {}}', "3: has no time"),
-        ('{"time": NaN, "pace": {}}', "3: has no time"),
+        ('{"time": 1e8, "pace": {}}', "3: is no event"),
+        ('{"time": NaN, "pace": {}}', "3: is no event"),
+        ('{"time": 1, "pace": {}}', "3: tells of a pace that cannot be"),
+        ('{"time": 1, "place": [0, 1]}', "3: tells of a place, and not of which tile"),
+        ('{"time": 1, "port": "a", "place": [0, 1], "open": true}', "3: tells of place and open at once"),
         ('{"time": 1, "run": {"seed": 1}}', "3: it has more than one run"),
-        ('{"time": 1, "port": "a", "place": [0, 1001]}', "3: has a place beyond 1000"),
-        (f'{{"time": 1, "port": "a", "raw": "{"x" * 4097}"}}', "3: has a text of more than 4096"),
+        ('{"time": 1, "port": "a", "place": [0, 1001]}', "3: tells of a place that cannot be"),
+        (f'{{"time": 1, "port": "a", "raw": "{"x" * 4097}"}}', "3: tells of a raw that cannot be"),
     ],
 )
 def test_what_the_page_would_not_show_is_refused(tmp_path: Path, line: str, why: str) -> None:
@@ -127,7 +131,7 @@ def test_one_that_has_no_run_or_too_many_events_is_refused(
     record.write_text(BEGINNING.splitlines(keepends=True)[0])
     with pytest.raises(UsageError, match="does not begin"):
         page_recording(record, LABELS, lambda model: None)
-    monkeypatch.setattr("tilenca.page.replayed.MOST_EVENTS", 3)
+    monkeypatch.setattr("tilenca.page.recording_file.MOST_EVENTS", 3)
     record.write_text(BEGINNING + 2 * PACE)
     with pytest.raises(UsageError, match="more than 3 events"):
         page_recording(record, LABELS, lambda model: None)

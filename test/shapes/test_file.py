@@ -25,11 +25,14 @@ def shape(label: str, *rows: str) -> str:
     return f'[[shape]]\nlabel = "{label}"\ngrid = """\n' + "\n".join(rows) + '\n"""\n'
 
 
-def refusal(path: Path, max_classes: int | None = None) -> str:
+def refusals(path: Path, max_classes: int | None = None) -> list[str]:
     with pytest.raises(UsageError) as caught:
         load_task(path, max_classes)
-    message = str(caught.value)
-    assert "\n" not in message
+    return str(caught.value).split("\n")
+
+
+def refusal(path: Path, max_classes: int | None = None) -> str:
+    (message,) = refusals(path, max_classes)
     return message
 
 
@@ -89,20 +92,22 @@ def test_an_unknown_shape_lists_the_known_ones(tmp_path: Path) -> None:
         (shape("1", "#.", "  ", ".#"), 4, "not connected"),
         (shape("1", "##", "", "##"), 5, "ragged rows"),
         (shape("1", "..", ".."), 4, "no tile"),
-        (shape("1", "##") + "\n# note\n" + shape("2", "##"), 8, "drawn exactly like '1'"),
-        (shape("@", "##"), 1, "label '@'; a 7-segment digit shows"),
-        (shape("T", "##"), 1, "label 'T'; did you mean 't'? a 7-segment digit shows"),
+        (shape("1", "##") + "\n# note\n" + shape("2", "##"), 11, "drawn exactly like '1'"),
+        (shape("@", "##"), 2, "label '@'; a 7-segment digit shows"),
+        (shape("T", "##"), 2, "label 'T'; did you mean 't'? a 7-segment digit shows"),
         (
             shape("heart", "##"),
-            1,
+            2,
             "is the one character that the tiles are to show, such as 'h'; a 7-segment",
         ),
-        (shape("4", "##").replace('"4"', "4"), 1, 'write "4", in quotes'),
-        (shape("10", "##"), 1, "label '10'"),
-        (shape("5", "##") + shape("S", "###"), 6, "look the same"),
+        (shape("4", "##").replace('"4"', "4"), 2, 'write "4", in quotes'),
+        (shape("10", "##"), 2, "label '10'"),
+        (shape("5", "##") + shape("S", "###"), 7, "look the same"),
         ('[[shape]]\nlabel = "1"\n', 1, "has no grid"),
         ('[[shape]]\ngrid = "#"\n', 1, "label missing"),
         ('[[shape]]\nlabel = "1"\ngrid = "#"\ncolour = "red"\n', 1, "unknown key 'colour'"),
+        ('[[shape]]\nlabel = "1"\ngrid = "#\\n##"\n', 3, "ragged rows"),
+        ('[[shape]\nlabel = "1"\n', 1, "not valid TOML"),
     ],
 )
 def test_a_mistake_names_its_line(tmp_path: Path, text: str, line: int, fact: str) -> None:
@@ -110,6 +115,28 @@ def test_a_mistake_names_its_line(tmp_path: Path, text: str, line: int, fact: st
     message = refusal(path)
     assert message.startswith(f"{path}:{line}: "), message
     assert fact in message
+
+
+def test_all_mistakes_are_named_at_once(tmp_path: Path) -> None:
+    """Each with its line, in the order of the file; what is right beside a mistake is no mistake."""
+    text = "size = 3\n" + shape("T", "##", "#") + shape("4", "#x", "##").replace("label", "lable")
+    text += shape("1", "#") + "[forms]\nT = [0]\n"
+    path = write(tmp_path, text)
+    assert [line.removeprefix(f"{path}:").partition(";")[0] for line in refusals(path)] == [
+        "1: unknown key 'size' (did you mean 'sizes'?)",
+        "3: label 'T'",
+        "6: shape 'T' has ragged rows (here 1 character, elsewhere 2)",
+        "8: unknown key 'lable' (did you mean 'label'?)",
+        "8: label missing",
+        "11: shape 2, column 2: unknown character 'x'",
+        ' [forms] "T" must be a list of texts, like ["0,0 1,0 | 1,0 1,1"]',
+    ]
+
+
+def test_of_many_mistakes_the_first_are_named(tmp_path: Path) -> None:
+    mistakes = refusals(write(tmp_path, "".join(shape("@", "#.#") for _ in range(15))))
+    assert len(mistakes) == 21
+    assert mistakes[-1] == "and 10 more mistakes"
 
 
 def test_too_many_classes_for_the_state(tmp_path: Path) -> None:
@@ -152,9 +179,7 @@ def test_arbitrary_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFact
 
 
 @given(damaged(b'[sizes]\nrows = [4, 6]\n[[shape]]\nlabel = "4"\ngrid = """\n#.#\n###\n..#\n"""\n'))
-def test_any_bytes_are_read_or_refused_in_one_line(
-    tmp_path_factory: pytest.TempPathFactory, content: bytes
-) -> None:
+def test_any_bytes_are_read_or_refused(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
     task = read_or_refused(tmp_path_factory.mktemp("fuzz") / "shapes.toml", content, load_task)
     assert task is None or task.shapes
 

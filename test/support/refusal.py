@@ -1,4 +1,4 @@
-"""How what is damaged is refused: in one line that says where."""
+"""How what is damaged is refused: in lines that say where."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -28,7 +28,7 @@ def read_or_refused(
     Args:
         path: the file, which is written here.
         content: its bytes.
-        read: may raise a `UsageError` of one line that begins with the file, and nothing else.
+        read: may raise a `UsageError` of lines that each begin with the file, and nothing else.
         within: the folder that a message may begin with instead.
     """
     path.write_bytes(content)
@@ -36,8 +36,7 @@ def read_or_refused(
     try:
         found = read(path)
     except UsageError as error:
-        message = str(error)
-        assert message.startswith(str(within or path))
-        assert "\n" not in message
+        lines = str(error).split("\n")
+        assert all(line.startswith(str(within or path)) for line in lines)
     assert path.read_bytes() == content
     return found

@@ -139,8 +139,8 @@ def test_axes_that_do_not_fit_are_refused(axes: list[str], engine: str, fact: st
 
 
 def test_messages_may_not_take_longer_than_the_shortest_period() -> None:
-    fits = points([parse_axis("latency=0.5,0.1-0.9"), parse_axis("ppm=0,90000")], FAST)
-    assert {point["latency"] for point in fits} == {"0.5", "0.1-0.9"}
+    fits = points([parse_axis("latency=0.5,0.1-0.9,tiles"), parse_axis("ppm=0,90000")], FAST)
+    assert {point["latency"] for point in fits} == {"0.5", "0.1-0.9", "tiles"}
     with pytest.raises(UsageError, match=r"--axis latency: messages of 0\.95 periods .* --axis ppm"):
         points([parse_axis("latency=0.95"), parse_axis("ppm=60000")], FAST)
     with pytest.raises(UsageError, match=r"at most 0\.98 periods"):

@@ -66,7 +66,17 @@ def test_results_do_not_depend_on_the_order_or_the_company_of_blocks() -> None:
 
 @needs_core
 @pytest.mark.parametrize(
-    "axis", ["loss=0.9", "flip=0.02", "dead=0.5", "stuck=1", "schedule=listing", "lost=zero", "latency=0.95"]
+    "axis",
+    [
+        "loss=0.9",
+        "flip=0.02",
+        "dead=0.5",
+        "stuck=1",
+        "schedule=listing",
+        "lost=zero",
+        "latency=0.95",
+        "latency=tiles",
+    ],
 )
 def test_each_axis_changes_what_happens(axis: str) -> None:
     more = ["loss=0.3"] if axis == "lost=zero" else []

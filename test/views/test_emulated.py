@@ -1,5 +1,7 @@
 """The displays of emulated tiles, and the verdict on them."""
 
+from pathlib import Path
+
 from tilenca.base.paths import DEFAULT_SHAPES, FIRMWARE_ELF
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.greeting import firmware_settings
@@ -81,4 +83,8 @@ def test_a_model_of_other_shapes_is_told_with_the_remedy() -> None:
     remedy = mismatch(emulation, letters)
     assert remedy is not None
     assert f"is not for {letters.path}" in remedy
-    assert remedy.endswith("tilenca export --model DIR --build, then tilenca emulate --model DIR")
+    assert remedy.endswith(f"; make one that is: tilenca make {letters.path}")
+    remedy = mismatch(emulation, letters, Path("models/no such"))
+    assert str(remedy).endswith(
+        "tilenca export --model 'models/no such' --build, then tilenca emulate --model 'models/no such'"
+    )

@@ -144,11 +144,11 @@ def test_keys_pause_move_and_speed_a_replay_and_q_ends_it(replay: Replay) -> Non
     replay.read_until("0 s, paused")
     replay.type(3 * RIGHT)
     replay.read_until("30 s, paused")
-    assert "1 show 3" in replay.read_until("30 s, paused")
+    assert "1 shows 3" in replay.read_until("30 s, paused")
     replay.type(LEFT)
     replay.read_until("20 s, paused")
     screen = replay.read_until("20 s, paused")
-    assert "1 show 2" in screen
+    assert "1 shows 2" in screen
     assert "shows 2, before 1" in screen
     assert "shows 3" not in screen, "it has not happened yet"
     replay.type(b" " + UP)

@@ -2,17 +2,22 @@
 
 import json
 from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 
 import pytest
 
 from support.films import change_of, film_of
+from support.schemas import fits
 from tilenca import cli
+from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
 from tilenca.fleet.recording import format_event
 from tilenca.fleet.state import PortNews
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import LinkSentence, Sentence, TileSentence, format_sentence
+from tilenca.protocol.stream import place_event
+from tilenca.shapes.file import load_task
 from tilenca.shapes.glyphs import DARK_LOOK, look_of
 from tilenca.views.reel import LAST_S, LEAST_S, MOST_S, of_recording, of_run
 
@@ -68,7 +73,7 @@ def test_a_recording_has_a_picture_whenever_something_is_new(tmp_path: Path) -> 
     assert reel.pictures[1].seconds == MOST_S
     assert reel.pictures[2].seconds == pytest.approx(LEAST_S)
     assert reel.agreed_at is None
-    assert reel.title == "2 tiles: 1 show nothing, 1 show 4"
+    assert reel.title == "2 tiles: 1 shows nothing, 1 shows 4"
     assert reel.about == "r.jsonl, 4.0 s recorded"
 
 
@@ -77,12 +82,23 @@ def test_emulated_tiles_lie_as_they_are_plugged_together_and_go_dark_without_pow
     words = ("--shape", "4", "--seconds", "5", "--fault", "off@4:2.5-4", "--record", str(path))
     assert cli.main(["emulate", *words]) in (0, 1)
     reel = of_recording(path)
-    assert len(reel.cells) == 10
+    assert reel.cells == load_task(paths.DEFAULT_SHAPES).find("4").cells
     assert reel.size == (5, 4)
     agreed = [number for number, picture in enumerate(reel.pictures) if picture.agreed]
+    with path.open(encoding="ascii") as lines:
+        assert all(fits("recording", json.loads(line)) for line in islice(lines, 20))
     number_4 = reel.cells.index((1, 3))
     dark = [n for n, picture in enumerate(reel.pictures) if picture.looks[number_4] == DARK_LOOK]
     assert any(number > agreed[0] for number in dark), "without power after all agreed"
+
+
+def test_a_tile_that_was_cut_off_and_one_that_is_silent_stay_in_their_places(tmp_path: Path) -> None:
+    path = written(tmp_path / "r.jsonl", [(0.0, tile(1, "7")), (0.3, tile(2, "7")), (0.5, tile(1, "7"))])
+    places = [place_event(100, f"/dev/ttyACM{n}", (n, 1), n) for n in (1, 2, 3)]
+    path.write_text("".join(f"{json.dumps(event)}\n" for event in places) + path.read_text(encoding="ascii"))
+    reel = of_recording(path)
+    assert reel.cells == ((0, 0), (1, 0), (2, 0))
+    assert [look and look.label for look in reel.pictures[-1].looks] == ["7", "7", ""]
 
 
 def test_what_cannot_be_filmed_is_told(tmp_path: Path) -> None:

@@ -82,6 +82,7 @@ def test_without_a_terminal_there_is_a_line_for_beginning_and_end_and_one_a_minu
     steps.begin("check")
     steps.expect("train", 400.0)
     steps.expect("measure", 30.0)
+    assert steps.expected() == "train at most 7 min, measure about 30 s"
     steps.end("check", "2 drawings")
     steps.begin("train")
     for iteration in range(10):

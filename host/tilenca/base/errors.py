@@ -1,11 +1,16 @@
 """The failures a user can cause or meet, each with the exit status of the command that met it.
 
-A message is one line: the fault, the place and the remedy. `tilenca.cli` prints it on stderr without a
-traceback; so it does with refusals of the system (a full disk, no memory). Every other exception is a defect
-of this program.
+A message is one line: the fault, the place and the remedy; that of a file with several mistakes has a line
+for each. `tilenca.cli` prints it on stderr without a traceback; so it does with refusals of the system (a
+full disk, no memory). Every other exception is a defect of this program.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from tilenca.base import paths
+
+MOST_MISTAKES = 20  # that a message has
 
 
 class TilencaError(Exception):
@@ -18,6 +23,37 @@ class UsageError(TilencaError):
     """Arguments or input files cannot be used as they are (exit status 2)."""
 
     exit_status = 2
+
+
+class Mistakes:
+    """What is wrong with an input file, gathered so that a person sees all of it at once."""
+
+    def __init__(self) -> None:
+        """Knows of no mistake."""
+        self._lines: list[str] = []
+
+    def add(self, message: str) -> None:
+        """Adds a message, of a line for each mistake."""
+        self._lines += message.split("\n")
+
+    @contextmanager
+    def gathered(self) -> Iterator[None]:
+        """Adds a `UsageError` that ends the block, and goes on behind it."""
+        try:
+            yield
+        except UsageError as error:
+            self.add(str(error))
+
+    def refuse(self) -> None:
+        """Raises what was gathered, if anything was.
+
+        Raises:
+            UsageError: a line for each mistake, the first of them where there are many.
+        """
+        more = len(self._lines) - MOST_MISTAKES
+        if self._lines:
+            rest = [f"and {more} more mistakes"] if more > 0 else []
+            raise UsageError("\n".join([*self._lines[:MOST_MISTAKES], *rest]))
 
 
 class NoDeviceError(TilencaError):

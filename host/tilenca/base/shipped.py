@@ -35,13 +35,14 @@ def shapes_file(text: str) -> Path:
 def model_folder(text: str) -> Path:
     """The model's directory that a user means; as `shapes_file`, with `models/hex` for a path in the tree.
 
-    A model of the project's folder `models` has a short name, too.
+    A model in the folder `models`, in the project or here, has a short name, too.
     """
     given = Path(text)
-    if paths.PROJECT is not None and len(given.parts) == 1 and not given.exists():
-        own = paths.PROJECT / "models" / given.name
-        if (own / "model.json").exists():
-            return own
+    if len(given.parts) == 1 and not given.exists():
+        for folder in (*([paths.PROJECT] if paths.PROJECT else []), Path()):
+            own = folder / "models" / given.name
+            if (own / "model.json").exists():
+                return own
     if not given.exists() and _inner_name(given, paths.MODELS.name, "") in model_names():
         return paths.MODELS / given.name
     return given

@@ -14,5 +14,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     Returns:
         Nothing where no known word is close.
     """
-    close = difflib.get_close_matches(word, list(known), 1)
+    words = list(known)
+    other_case = [one for one in words if one.casefold() == word.casefold()]
+    close = other_case or difflib.get_close_matches(word, words, 1)
     return f" (did you mean '{close[0]}'?)" if close else ""

@@ -23,7 +23,7 @@ from tilenca.commands.emulate_runs import (
     updates_for,
 )
 from tilenca.commands.emulate_watch import watch_all
-from tilenca.commands.origin import model_with_id, own_drawings, own_shapes, without_a_dash
+from tilenca.commands.origin import folder_of, model_with_id, own_drawings, own_shapes, without_a_dash
 from tilenca.commands.own_firmware import image_of
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.fault_spec import FaultError
@@ -131,10 +131,13 @@ def _prepare(args: argparse.Namespace) -> _Run:
     for option in ("serve", "eeprom", "vcd", "frames", "gdb"):
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
+    fits = hello is None or _fits(hello, known and known[0], task)
+    args.trained = None if fits else folder_of(task)
     if hello is None:
         told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
     else:
-        told = _foreign(hello, known and known[0], task)
+        told = [] if fits else [foreign_firmware(hello, task, args.trained)]
+        told += [note for note in (known and without_a_dash(known[0]),) if told and note]
     args.foreign = bool(told)
     args.own_model, args.own_folder = known or (None, None)
     own = own_drawings(*known, task) if known else {shape.name for shape in task.shapes}
@@ -167,14 +170,11 @@ def _prepare(args: argparse.Namespace) -> _Run:
     return _Run(task, shapes, lay_out, told)
 
 
-def _foreign(hello: HelloSentence, model: Model | None, task: Task) -> list[str]:
-    """What to say before the run where the firmware's model does not know a class of the file."""
+def _fits(hello: HelloSentence, model: Model | None, task: Task) -> bool:
+    """Whether the firmware's model knows every class of the file, as far as one can tell."""
     if model is None:
-        fits = hello.classes in (len(task.labels), len({*task.labels, UNKNOWN}))
-    else:
-        fits = set(task.labels) <= set(model.labels)
-    notes = [] if fits else [foreign_firmware(hello, task)]
-    return notes + [note for note in (model and without_a_dash(model),) if notes and note]
+        return hello.classes in (len(task.labels), len({*task.labels, UNKNOWN}))
+    return set(task.labels) <= set(model.labels)
 
 
 def _serve(args: argparse.Namespace, emulation: Emulation) -> None:

@@ -22,7 +22,9 @@ from tilenca.emulator.debug import attend, debuggers, frames, waveforms
 from tilenca.emulator.eeprom_files import save_eeprom
 from tilenca.emulator.experiment import Emulation
 from tilenca.emulator.side_by_side import run_side_by_side
+from tilenca.emulator.types import port_name
 from tilenca.evaluation.cases import steps_for
+from tilenca.fleet.grid import Laid
 from tilenca.fleet.recording import Recorder, as_record
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.file import Shape, Task
@@ -48,10 +50,14 @@ class EmulationResult:
     notes: tuple[str, ...]
 
 
-def record_line(shape: Shape, heard: Heard) -> str:
-    """What a tile said as a line of a recording, newline included."""
-    tile = int(heard.port.rpartition("-")[2])
-    return json.dumps({**as_record(heard), "tile": tile, "shape": shape.name}) + "\n"
+def keep(record: Recorder | None, shape: Shape, heard: Sequence[Heard]) -> None:
+    """Writes what the tiles of a shape said into a recording, and before it where they lie."""
+    if record is None or not heard:
+        return
+    laid = {port_name(number): Laid(cell, number + 1) for number, cell in enumerate(shape.cells)}
+    record.place(heard[0].time_s, laid, shape=shape.name)
+    lines = [{**as_record(line), "tile": laid[line.port].tile, "shape": shape.name} for line in heard]
+    record.write(json.dumps(line) + "\n" for line in lines)
 
 
 def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, started: float) -> EmulationResult:
@@ -66,12 +72,12 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
     notes = [f"not emulated: {warning}" for tile in emulation.array for warning in tile.warnings]
     notes += _too_late(emulation)
     expected = 0 if args.foreign else updates_for(emulation.shape)
-    if args.own_model is None and (remedy := mismatch(emulation, task)):
+    if args.own_model is None and (remedy := mismatch(emulation, task, args.trained)):
         notes.append(remedy)
         expected = 0  # more time would not help
     judged = judge(emulation, expected)
     if judged == WRONG and args.own_model is not None and not (args.foreign or args.fault):
-        notes.append(why_wrong(args.own_model, task))
+        notes.append(why_wrong(args.own_model, task, args.size))
     if args.others and args.own_model is not None and not args.foreign:
         notes.append(_of_one_run(args, task))
     report = emulation.report(time.monotonic() - started) | {"verdict": judged}
@@ -165,26 +171,25 @@ def run_all(
     results = []
     with (shown or show_progress)() as tell:
 
-        def run(shape: Shape, stopped: threading.Event) -> tuple[EmulationResult, list[str]]:
+        def run(shape: Shape, stopped: threading.Event) -> tuple[EmulationResult, list[Heard]]:
             return _run_one(args, task, lay_out, shape, tell, stopped)
 
-        for shape, (result, lines) in run_side_by_side(run, shapes):
+        for shape, (result, heard) in run_side_by_side(run, shapes):
             results.append(result)
             emulated_s, wall_s = result.report["simulated_s"], result.report["wall_s"]
             speed = emulated_s / max(wall_s, 0.001)
             if shown is None:
                 warn(f"{shape.name}: {emulated_s:.1f} s emulated, {speed:.1f} times real time")
-            if record is not None:
-                record.write(lines)
+            keep(record, shape, heard)
     return results
 
 
 def _run_one(
     args: argparse.Namespace, task: Task, lay_out: LayOut, shape: Shape, tell: Tell, stopped: threading.Event
-) -> tuple[EmulationResult, list[str]]:
+) -> tuple[EmulationResult, list[Heard]]:
     """Runs one shape to its end; returns the result and the lines to record."""
     started = time.monotonic()
-    lines: list[str] = []
+    kept: list[Heard] = []
     tell(shape.name, 0.0, "laying out")
     emulation = lay_out(shape)
     with emulation.array, observe(emulation, args, stopped.is_set) as on_slice:
@@ -198,14 +203,14 @@ def _run_one(
             if check is not None:
                 check.look()
             if args.record is not None:
-                lines.extend(record_line(shape, line) for line in heard)
+                kept.extend(heard)
 
         emulation.run(look)
         result = result_of(args, emulation, task, started)
         if check is not None:
             words = f"{result.verdict}; {check.words()}"
             result = replace(result, report=result.report | {"states": check.report()}, verdict=words)
-        return result, lines
+        return result, kept
 
 
 def print_results(args: argparse.Namespace, results: Sequence[EmulationResult]) -> None:

@@ -11,7 +11,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from tilenca.commands.emulate_runs import EmulationResult, LayOut, observe, record_line, result_of
+from tilenca.commands.emulate_runs import EmulationResult, LayOut, keep, observe, result_of
 from tilenca.emulator.experiment import SLICE_S, Emulation
 from tilenca.fleet.recording import Recorder
 from tilenca.protocol.line_reader import Heard
@@ -159,8 +159,7 @@ def watch_all(
                     heard: list[Heard], shape: Shape = shape, on_slice: Callable[[], None] = on_slice
                 ) -> None:
                     on_slice()
-                    if record is not None:
-                        record.write(record_line(shape, line) for line in heard)
+                    keep(record, shape, heard)
 
                 if console.is_terminal:
                     endless = wait is not None and args.seconds is None and args.updates is None

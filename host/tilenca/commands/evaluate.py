@@ -37,10 +37,10 @@ from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings, load_training_task
 from tilenca.shapes.file import too_large
 from tilenca.shapes.sizes import Size, size_name
-from tilenca.simulator.conditions import Conditions, parse_latency
+from tilenca.simulator.conditions import AS_TILES, Conditions, latency_of
 from tilenca.simulator.engine import Engine, FastEngine
 from tilenca.simulator.simulator import Simulator
-from tilenca.simulator.tile_times import DRIFT, tile_times
+from tilenca.simulator.tile_times import DRIFT
 from tilenca.sweep.axes import STEP_S
 from tilenca.sweep.emulated import PLUGS, EmulatedRun, Image, plugged, run_emulated
 from tilenca.views.progress import show_progress
@@ -58,7 +58,6 @@ FIXED_BY_SUITE = {
     "boot_spread": None,
     "latency": None,
 }
-AS_TILES = "tiles"  # a latency
 RUNS = {"fast": 100, "float": 100, "emulator": 1}
 
 
@@ -185,11 +184,10 @@ def _conditions(args: argparse.Namespace, model: Model) -> Conditions:
         usual = replace(usual, boot=args.boot_spread / STEP_S)
     if args.latency is None:
         return usual
-    if args.latency == AS_TILES:
-        times = tile_times(model.dimensions, firmware_period_ms())
-        return replace(usual, latency=times, drift=DRIFT)
+    drift = DRIFT if args.latency == AS_TILES else usual.drift
     try:
-        return replace(usual, latency=parse_latency(args.latency))
+        latency = latency_of(args.latency, model.dimensions, firmware_period_ms())
+        return replace(usual, latency=latency, drift=drift)
     except ValueError as error:
         raise UsageError(f"--latency: {error}") from error
 

@@ -15,6 +15,7 @@ from typing import Any
 
 from tilenca.base import paths
 from tilenca.base.errors import InterruptedRunError, UsageError
+from tilenca.base.processors import processors_text
 from tilenca.base.project import project
 from tilenca.base.shipped import shapes_file
 from tilenca.base.signals import promising
@@ -138,9 +139,11 @@ def _check(
         steps.expect(MEASURE, measuring_s(untrained, suite, plan.validation_runs, pace))
     if done or args.scheduler is None:
         steps.expect(BUILD, building_s(args, pace))
-        steps.expect(EMULATE, emulating_s(plan, pace))
+        steps.expect(EMULATE, emulating_s(args, plan, pace))
     labels = plan.task.labels
     steps.end(CHECK, f"{len(plan.task)} drawings of {len(labels)} classes: {' '.join(labels)}")
+    if expected := steps.expected():
+        warn(f"estimated on {processors_text()}: {expected}")
     if done:
         steps.end(TRAIN, "trained on this file before; --force trains anew")
         steps.end(MEASURE, f"{args.out / 'README.md'}")

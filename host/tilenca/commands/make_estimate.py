@@ -3,14 +3,19 @@
 import argparse
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tilenca.base import paths
+from tilenca.base.errors import TilencaError
+from tilenca.base.sides import EAST, WEST
 from tilenca.commands.train_plan import TrainingPlan
 from tilenca.commands.train_steps import at_once, jobs_of
+from tilenca.emulator.array import Array
+from tilenca.emulator.side_by_side import at_once as side_by_side
 from tilenca.evaluation.suites import Suite
 from tilenca.evaluation.workload import work_of
 from tilenca.model import cost
@@ -29,7 +34,9 @@ PROBE_UPDATES, PROBE_STEPS, PROBE_S = 60_000, 30, 0.5  # of tiles at once, and f
 S_PER_MAC = 0.062e-9
 ROW_S = 0.02  # of a measurement, beside the updates of its tiles
 COLD_BUILD_S, WARM_BUILD_S = 5.0, 2.0
-EMULATE_S, EMULATE_TILE_S = 2.0, 0.06
+EMULATE_S, TILE_SECOND_S = 2.0, 0.023  # to lay out and report; an emulated second of a tile
+EMULATED_S = 2.6  # until the tiles of a drawing agree, the bootloader's second included
+TALKING_S, TIMED_TILES_S = 0.1, 0.2  # two emulated tiles talk by then, and are timed for so long
 
 
 @dataclass(frozen=True)
@@ -71,9 +78,25 @@ def building_s(args: argparse.Namespace, pace: Pace) -> float:
     return (WARM_BUILD_S if is_warm else COLD_BUILD_S) * pace.factor
 
 
-def emulating_s(plan: TrainingPlan, pace: Pace) -> float:
+def emulating_s(args: argparse.Namespace, plan: TrainingPlan, pace: Pace) -> float:
     """How long it takes to emulate every drawing of the file until its tiles agree."""
-    return (EMULATE_S + EMULATE_TILE_S * int(plan.task.sizes.sum())) * pace.factor
+    tile_s = None if (timed := _tile_second_s(args)) is None else timed / side_by_side(len(plan.task))
+    of_a_tile = TILE_SECOND_S * pace.factor if tile_s is None else tile_s
+    return EMULATE_S * pace.factor + EMULATED_S * int(plan.task.sizes.sum()) * of_a_tile
+
+
+def _tile_second_s(args: argparse.Namespace) -> float | None:
+    """How long an emulated second of one tile takes, by two that talk; None: there is no firmware yet."""
+    images = paths.model_elf(args.out), paths.firmware_elf()
+    image = next((image for image in images if image.exists()), None)
+    if image is None:
+        return None
+    with suppress(TilencaError), Array(image, 2, [(0, EAST, 1, WEST)], translated=False) as array:
+        array.run(TALKING_S)
+        began_s = time.perf_counter()
+        array.run(TIMED_TILES_S)
+        return (time.perf_counter() - began_s) / (2 * TIMED_TILES_S)
+    return None
 
 
 def training_s(args: argparse.Namespace, plan: TrainingPlan) -> tuple[float, Model]:

@@ -78,18 +78,19 @@ def run(args: argparse.Namespace) -> int:
     try:
         with ExitStack() as stack:
             if args.replay:
-                choice = Choice(args.replay, args.port)
+                grid = Grid(load_places(args.tiles), given=args.tiles is not None)
+                choice = Choice(args.replay, args.port, grid.lay)
                 speed = 1.0 if args.speed is None else args.speed
                 player = Player(lambda: iter(choice), speed, TICK_S, args.start or 0.0)
-                display = _display(args, fleet, Grid(load_places(args.tiles)), stack, player)
+                display = _display(args, fleet, grid, stack, player)
                 start_s = args.start or 0.0
-                _show(iter(player), fleet, display, None, args.seconds, start_s)
+                _show(iter(player), fleet, display, args.seconds, start_s)
                 choice.complain(start_s)
             else:
                 listener = stack.enter_context(Listener(args.port, args.tiles))
                 record = stack.enter_context(Recorder(args.record, "a")) if args.record else None
                 display = _display(args, fleet, listener.grid, stack)
-                _show(_heard(listener), fleet, display, record, args.seconds)
+                _show(_kept(_heard(listener), listener.grid, record), fleet, display, args.seconds)
     finally:
         if fleet.tiles:
             warn(summary(fleet.tiles.values()))
@@ -107,7 +108,6 @@ def _show(
     source: Events,
     fleet: Fleet,
     display: Display,
-    record: Recorder | None,
     seconds: float | None,
     start_s: float = 0.0,
 ) -> None:
@@ -119,8 +119,6 @@ def _show(
             return
         for event in events:
             fleet.take(event)
-        if record and events:
-            record.write(map(format_event, events))
         display.show(now_s, events)
 
 
@@ -129,6 +127,15 @@ def _heard(listener: Listener) -> Events:
     while True:
         news = listener.poll(TICK_S)
         yield time.time(), news
+
+
+def _kept(source: Events, grid: Grid, record: Recorder | None) -> Events:
+    """The same, recorded, with the places that the file of tiles says."""
+    for now_s, events in source:
+        if record and events:
+            record.place(events[0].time_s, grid.known())
+            record.write(map(format_event, events))
+        yield now_s, events
 
 
 def _display(

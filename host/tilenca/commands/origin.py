@@ -1,6 +1,7 @@
 """A model knows what it was made of: its shape files, and which model a firmware carries."""
 
 import hashlib
+import shlex
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -11,6 +12,8 @@ from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
 from tilenca.model.file import Model, load_model
 from tilenca.shapes.file import UNKNOWN, Task, load_task
+from tilenca.shapes.sizes import Size, size_name
+from tilenca.shapes.trainable import extent
 
 MOST_NAME = 255  # bytes; systems refuse longer ones
 NEAR = 3  # folders above a model in which its shape files are looked for
@@ -125,10 +128,40 @@ def _is_of(model: Model, task: Task) -> bool:
     return ships_with_it or hashlib.sha256(task.path.read_bytes()).hexdigest() in named.values()
 
 
-def why_wrong(model: Model, task: Task) -> str:
-    """What to look at where tiles run the right model and show another label than the file says."""
+def folder_of(task: Task) -> Path | None:
+    """The folder of a model that was made of this file, here or in the project; None: there is none."""
+    sha256 = hashlib.sha256(task.path.read_bytes()).hexdigest()
+    for about in [*sorted(Path("models").glob("*/model.json")), *_descriptions()]:
+        with suppress(OSError, UnicodeDecodeError, UsageError):
+            if sha256 in about.read_text(encoding="utf-8") and _is_of(load_model(about.parent), task):
+                return about.parent
+    return None
+
+
+def _was_trained_at(model: Model, task: Task, size: Size) -> bool:
+    """Whether the drawings of the model's own file were stretched to a size in its training."""
+    stretch = 1.0
+    with suppress(TypeError, KeyError, ValueError):
+        stretch = float(model.metadata["recipe"]["stretch"])
+    sizes = task.sizes.within(extent(task), stretch)
+    return size in (extent(task), *sizes.trained, *sizes.more)
+
+
+def why_wrong(model: Model, task: Task, size: Size | None = None) -> str:
+    """What to look at where tiles run the right model and show another label than the file says.
+
+    Args:
+        model: that they run.
+        task: the file's.
+        size: that its drawings were stretched to; None: they are as drawn.
+    """
     id_text = f"{model.model_id:04X}"
-    if _is_of(model, task):
+    if size is not None and _is_of(model, task) and not _was_trained_at(model, task, size):
+        made = (
+            f"model {id_text} was made of this file, and never trained at {size_name(size)}; give the file "
+            f"[sizes] that go there, and run tilenca make {shlex.quote(str(task.path))} --recipe full --force"
+        )
+    elif _is_of(model, task):
         made = f"model {id_text} was made of this file, and does not hold it; a better one: {FULL}"
     else:
         named = [*_hashes(model)]

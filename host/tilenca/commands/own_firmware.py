@@ -8,6 +8,8 @@ from pathlib import Path
 from tilenca.base import paths
 from tilenca.base.errors import BuildError
 from tilenca.base.project import build_remedy, firmware_image, project
+from tilenca.base.shipped import model_names
+from tilenca.base.suggest import did_you_mean
 from tilenca.commands.arguments import existing_image
 from tilenca.emulator.greeting import greeting
 from tilenca.fleet.build import build
@@ -59,8 +61,8 @@ def image_of(folder: Path) -> Path:
     image = paths.model_elf(folder)
     if image.exists():
         return image
-    if not (folder / "model.json").exists() and (begun := _begun(folder)):
-        raise BuildError(f"{folder}: {begun}")
+    if not (folder / "model.json").exists():
+        raise BuildError(f"{folder}: {_begun(folder) or _no_model(folder)}")
     remedy = f"run: tilenca export --model {folder} --build"
     if folder.resolve() != paths.DEFAULT_MODEL.resolve():
         raise BuildError(f"{folder}: no firmware was built of it; {remedy}")
@@ -82,6 +84,14 @@ def _begun(folder: Path) -> str | None:
         return None
     command = f"{sessions[-1].command} --resume" if sessions else "the command that began it, with --resume"
     return f"its training was interrupted, and there is no model yet; go on with: {command}"
+
+
+def _no_model(folder: Path) -> str:
+    """What to say of a folder in which no training ever was."""
+    beside = sorted(str(about.parent) for about in folder.parent.glob("*/model.json"))
+    here = sorted(about.parent.name for about in Path("models").glob("*/model.json"))
+    meant = did_you_mean(str(folder), [*beside, *here, *model_names()])
+    return f"no model is there{meant}; make one: tilenca make FILE"
 
 
 def image_to_write(folder: Path, building: bool = True) -> Path:

@@ -21,6 +21,7 @@ from tilenca.commands.arguments import add_fleet_arguments
 from tilenca.commands.origin import model_with_id
 from tilenca.commands.page_models import page_models
 from tilenca.fleet.boards import load_places
+from tilenca.fleet.grid import Grid
 from tilenca.fleet.listen import Listener
 from tilenca.fleet.ports import megas, serial_ports
 from tilenca.fleet.recording import Recorder
@@ -173,7 +174,8 @@ def _watched(args: argparse.Namespace, stack: ExitStack) -> "Callable[[str], Sou
 def _recording(args: argparse.Namespace) -> str:
     """The recording, as the page takes it."""
     labels = load_offer(args.shapes or ()).labels
-    return page_recording(args.replay, labels, _labels_of, load_places(args.tiles))
+    grid = Grid(load_places(args.tiles), given=args.tiles is not None)
+    return page_recording(args.replay, labels, _labels_of, grid)
 
 
 def _labels_of(model_id: int) -> Sequence[str] | None:

@@ -29,6 +29,14 @@ class Mark(Enum):
 
 
 @dataclass(frozen=True)
+class Laid:
+    """Where a tile lies, by row and column, and its id where it is known."""
+
+    place: Position
+    tile: int | None = None
+
+
+@dataclass(frozen=True)
 class Cell:
     """One tile as it is drawn.
 
@@ -72,12 +80,14 @@ def trouble(view: TileView, now_s: float) -> str:
 
 
 class Grid:
-    """Finds each port's place: in `tiles.toml`, else by what tiles say or said of others, else in a row."""
+    """Finds each port's place: recorded, in `tiles.toml`, by what tiles say or said of others, or a row."""
 
-    def __init__(self, places: Sequence[Place] = ()) -> None:
-        """Takes the places of the file, if there is one."""
+    def __init__(self, places: Sequence[Place] = (), given: bool = False) -> None:
+        """Takes the places of the file, if any; a `given` one counts more than a recording."""
+        self._given = given
         self._places = {place.tile: (place.row, place.col) for place in places}
         self._tiles: dict[str, int] = {}
+        self._laid: dict[str, Laid | None] = {}
         self._heard: dict[int, dict[str, tuple[int, str]]] = {}
         self._known: dict[int, dict[str, tuple[int, str]]] = {}
         self._cells: dict[int, Position] = {}
@@ -86,20 +96,37 @@ class Grid:
         """Learns which tile of the file is behind which port now."""
         self._tiles |= {board.port.name: board.tile for board in found.boards if board.tile is not None}
 
+    def known(self) -> dict[str, Laid]:
+        """Where the tile behind each port lies, as the file says it."""
+        return {
+            port: Laid(self._places[tile], tile) for port, tile in self._tiles.items() if tile in self._places
+        }
+
+    def lay(self, port: str, laid: Laid | None) -> None:
+        """Learns from a recording where the tile behind a port lies from now on; None: it was taken away."""
+        if self._given:
+            return
+        if laid is not None:
+            kept = {other: at for other, at in self._laid.items() if at is None or at.place != laid.place}
+            self._laid = kept
+        self._laid[port] = laid
+
     def tile_of(self, view: TileView) -> int | None:
         """Which tile is behind a port: as the file says, else as it says itself."""
         return self._tiles.get(view.port, view.tile_id or None)
 
     def cells(self, fleet: Fleet, now_s: float) -> dict[Position, Cell]:
         """The tiles by row and column."""
-        lie = dict(self._places) or self._arranged(fleet)
+        laid = {port: at for port, at in self._laid.items() if at is not None}
+        lie = {} if laid else dict(self._places) or self._arranged(fleet)
         grid: dict[Position, Cell] = {lie[tile]: Cell(tile, trouble="no port") for tile in lie}
+        grid |= {at.place: Cell(at.tile, trouble="silent", port=port) for port, at in laid.items()}
         taken: set[Position] = set()
         below = max((row for row, _ in grid), default=-1) + 1
         rest = 0
         for view in self._views(fleet):
             tile = self.tile_of(view)
-            place = None if tile is None else lie.get(tile)
+            place = laid[view.port].place if view.port in laid else lie.get(tile or 0)
             if place is None or place in taken:
                 place, rest = (below, rest), rest + 1
             taken.add(place)
@@ -108,8 +135,9 @@ class Grid:
 
     def _views(self, fleet: Fleet) -> list[TileView]:
         """All tiles; one that came back behind another port is no longer behind the old one."""
-        here = {self.tile_of(view) for view in fleet.tiles.values() if view.is_open} - {None}
-        return [v for v in fleet.tiles.values() if v.is_open or self.tile_of(v) not in here]
+        there = [view for view in fleet.tiles.values() if self._laid.get(view.port, view) is not None]
+        here = {self.tile_of(view) for view in there if view.is_open} - {None}
+        return [view for view in there if view.is_open or self.tile_of(view) not in here]
 
     def _arranged(self, fleet: Fleet) -> dict[int, Position]:
         heard = neighbours(fleet)

@@ -1,29 +1,46 @@
 """Telemetry on disk: JSON lines with time, port and raw bytes, so that later readers can parse them anew.
 
-A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port", "open", "reason"}`.
+A line from a tile is `{"time", "port", "raw"}`, news of a port `{"time", "port", "open", "reason"}`, and the
+place of a tile, as far as it is known, `{"time", "port", "place", "tile"}`.
 """
 
 import fnmatch
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Self, TypeAlias
 
 from tilenca.base.errors import NoDeviceError, TilencaError, UsageError
 from tilenca.base.parsing import read_json
 from tilenca.base.stdio import warn
+from tilenca.fleet.grid import Laid
 from tilenca.fleet.state import Event, PortNews
+from tilenca.fleet.tiles_file import FAR, MAX_TILE_ID
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.sentences import parse_sentence
-from tilenca.protocol.stream import KINDS, RAW_ENCODING, StreamEvent, open_event, raw_event
+from tilenca.protocol.stream import KINDS, RAW_ENCODING, StreamEvent, open_event, place_event, raw_event
 
 # No line is so long.
 LONGEST = 1 << 20
 
 # The last moment that every calendar function accepts.
 LAST_S = 253_402_300_799.0
+
+
+# Hears where the tile behind a port lies from now on; None: it was taken away.
+Lay: TypeAlias = Callable[[str, Laid | None], None]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Where the tile behind a port lies from now on; None: it was taken away."""
+
+    time_s: float
+    port: str
+    laid: Laid | None
 
 
 def as_record(event: Event) -> StreamEvent:
@@ -49,6 +66,7 @@ class Recorder:
                 lines could not be read.
         """
         self._path = path
+        self._laid: dict[str, Laid] = {}
         try:
             if mode == "a" and path.is_file() and not _begins_well(path):
                 raise UsageError(f"{path}: not a recording; give --record another file")
@@ -57,6 +75,26 @@ class Recorder:
             self._file = path.open(mode, encoding="ascii")
         except OSError as error:
             raise UsageError(f"{path}: {error.strerror}; give --record a file that can be written") from error
+
+    def place(self, time_s: float, laid: Mapping[str, Laid], **about: object) -> None:
+        """Writes where all tiles lie that one knows of, as far as it is news.
+
+        Args:
+            time_s: since when.
+            laid: by port.
+            about: further keys of these lines.
+
+        Raises:
+            TilencaError: there is no room.
+        """
+        gone = [place_event(time_s, port, None) for port in self._laid if port not in laid]
+        news = [
+            place_event(time_s, port, at.place, at.tile)
+            for port, at in laid.items()
+            if self._laid.get(port) != at
+        ]
+        self._laid = dict(laid)
+        self.write(json.dumps(event | about) + "\n" for event in (*gone, *news))
 
     def write(self, lines: Iterable[str]) -> None:
         """Writes whole lines, at once.
@@ -98,8 +136,8 @@ def _ends_well(path: Path) -> bool:
         return file.read() in (b"", b"\n")
 
 
-def parse_event(line: str) -> Event | None:
-    """The event of a line; None for one of the stream that is no telemetry, such as a tile's place.
+def parse_event(line: str) -> Event | Placed | None:
+    """The event of a line; None for one of the stream that is of no use here, such as a cable.
 
     Raises:
         ValueError: it is none.
@@ -118,24 +156,46 @@ def parse_event(line: str) -> Event | None:
             "reason": str(reason),
         }:
             return PortNews(float(time_s), port, is_open, reason)
+        case {"time": float() | int() as time_s, "port": str(port), "place": place}:
+            return Placed(float(time_s), port, _laid(place, about.get("tile")))
         case {"time": float() | int()} if sum(kind in about for kind in KINDS) == 1:
             if "raw" not in about and "open" not in about:
                 return None
     raise ValueError("neither a line nor news of a port")
 
 
+def _laid(place: object, tile: object) -> Laid | None:
+    """A tile's place, checked.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if place is None:
+        return None
+    match place:
+        case [int(row), int(col)] if all(type(n) is int and abs(n) <= FAR for n in (row, col)):
+            if tile is None or (type(tile) is int and 1 <= tile <= MAX_TILE_ID):
+                return Laid((row, col), tile)
+    raise ValueError(f"a place is [row, column], -{FAR} to {FAR}, and a tile's id 1 to {MAX_TILE_ID}")
+
+
+def nowhere(port: str, laid: Laid | None) -> None:
+    """Passes over where tiles lie."""
+
+
 class Choice:
     """The events of those ports of a recording that match patterns, and notes on all of it."""
 
-    def __init__(self, path: Path, patterns: Sequence[str]) -> None:
-        self._path, self._patterns = path, patterns
+    def __init__(self, path: Path, patterns: Sequence[str], lay: Lay = nowhere) -> None:
+        """Reads nothing yet; `lay` hears where tiles lie, as the recording says it."""
+        self._path, self._patterns, self._lay = path, patterns, lay
         self._ports: dict[str, bool] = {}
         self._length_s = 0.0
         self._complete = False
 
     def __iter__(self) -> Iterator[Event]:
         first_s: float | None = None
-        for event in read_recording(self._path):
+        for event in read_recording(self._path, self._lay_chosen):
             if event.port not in self._ports:
                 self._ports[event.port] = self._matches(event.port)
             if self._ports[event.port]:
@@ -143,6 +203,10 @@ class Choice:
                 self._length_s = max(self._length_s, event.time_s - first_s)
                 yield event
         self._complete = True
+
+    def _lay_chosen(self, port: str, laid: Laid | None) -> None:
+        if self._matches(port):
+            self._lay(port, laid)
 
     def _matches(self, port: str) -> bool:
         """By a port's whole name or the end of it: `tiles.toml` has names from `/` on."""
@@ -169,22 +233,26 @@ class Choice:
             warn(f"{self._path}: --from {start_s:g} is past its end, at {self._length_s:.1f} s")
 
 
-def read_recording(path: Path) -> Iterator[Event]:
+def read_recording(path: Path, lay: Lay = nowhere) -> Iterator[Event]:
     """The events of a file, in its order.
+
+    Args:
+        path: what `--record` wrote.
+        lay: hears where tiles lie, before the events that follow.
 
     Raises:
         UsageError: the file cannot be read, or a line is no event; the message names the line.
     """
     try:
         with path.open(encoding="ascii") as file:
-            yield from _events(path, file)
+            yield from _events(path, file, lay)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}; give a file that --record wrote") from error
     except UnicodeDecodeError as error:
         raise UsageError(f"{path}: not a recording; give a file that --record wrote") from error
 
 
-def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
+def _events(path: Path, lines: Iterable[str], lay: Lay) -> Iterator[Event]:
     for number, line in enumerate(lines, start=1):
         try:
             event = parse_event(line)
@@ -195,7 +263,9 @@ def _events(path: Path, lines: Iterable[str]) -> Iterator[Event]:
                 ) from error
             warn(f"{path}:{number}: cut off in its middle; the recording ends before it")
             return
-        if event is not None:
+        if isinstance(event, Placed):
+            lay(event.port, event.laid)
+        elif event is not None:
             yield event
 
 

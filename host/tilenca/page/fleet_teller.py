@@ -167,7 +167,7 @@ class FleetTeller:
         return events
 
     def _shown_of(self, place: Position, cell: Cell) -> _Shown:
-        view = self.fleet.tiles[cell.port] if cell.port else TileView("")
+        view = self.fleet.tiles.get(cell.port or "", TileView(""))
         links = {
             side: (mark.name.lower(), view.health[side].good if side in view.health else None)
             for side, mark in cell.marks.items()

@@ -164,6 +164,7 @@ class Watch:
         if self._record is None:
             return
         try:
+            self._record.place(event.time_s, self._listener.grid.known())
             self._record.write([format_event(event)])
         except TilencaError as error:
             self._record = None

@@ -6,13 +6,15 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from tilenca.model.file import Dimensions
 from tilenca.simulator.rollout_library import SCHEDULES
-from tilenca.simulator.tile_times import TileTimes
+from tilenca.simulator.tile_times import TileTimes, tile_times
 
 ScheduleKind = Literal["random", "clock", "listing"]
 FaultKind = Literal["dead", "stuck", "away"]
 Switches = NDArray[np.int32]
 USUAL_LATENCY = (0.1, 0.9)
+AS_TILES = "tiles"  # a latency
 MOST_LATENCY = 0.98  # a message arrives before its sender sends the next, with a period 1 % off
 
 
@@ -112,6 +114,20 @@ def parse_latency(text: str) -> tuple[float, float]:
     if not 0 < latency[0] <= latency[1] <= MOST_LATENCY:
         raise ValueError(f"'{text}': messages take more than 0 and at most {MOST_LATENCY} periods")
     return latency
+
+
+def latency_of(text: str, size: Dimensions, period_ms: float) -> tuple[float, float] | TileTimes:
+    """What messages take: as `parse_latency` says, or with `tiles` what they take on tiles, by their side.
+
+    Args:
+        text: as it is given.
+        size: of the model.
+        period_ms: of an update.
+
+    Raises:
+        ValueError: it is not valid; the message says why.
+    """
+    return tile_times(size, period_ms) if text == AS_TILES else parse_latency(text)
 
 
 @dataclass(frozen=True)

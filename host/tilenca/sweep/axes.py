@@ -15,7 +15,7 @@ from itertools import product
 from tilenca.base.errors import UsageError
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.shapes.sizes import parse_size
-from tilenca.simulator.conditions import USUAL_LATENCY, Conditions, parse_latency
+from tilenca.simulator.conditions import AS_TILES, USUAL_LATENCY, Conditions, parse_latency
 from tilenca.simulator.rollout_library import SCHEDULES
 
 FAST, EMULATOR = "fast", "emulator"
@@ -63,6 +63,11 @@ def _read_size(text: str) -> None:
         parse_size(text)
 
 
+def _read_latency(text: str) -> None:
+    if text != AS_TILES:
+        parse_latency(text)
+
+
 AXES: dict[str, AxisKind] = {
     "model": AxisKind("models: folders or short names", _both("", "")),
     "drawings": AxisKind("kinds of drawings", _both(KINDS[0], KINDS[0]), words=KINDS),
@@ -81,9 +86,9 @@ AXES: dict[str, AxisKind] = {
         "switched on within so many seconds", _both(Conditions.boot * STEP_S, 1.0), 3600.0
     ),
     "latency": AxisKind(
-        "what a message takes, in periods: 0.5, or between 0.1-0.9",
+        f"what a message takes, in periods: 0.5, or between 0.1-0.9; {AS_TILES}: as on tiles, by its side",
         {FAST: LATENCY},
-        read=parse_latency,
+        read=_read_latency,
     ),
 }
 
@@ -213,7 +218,10 @@ def points(axes: Sequence[Axis], engine: str) -> list[Point]:
 def _check_latency(axes: Sequence[Axis]) -> None:
     """Refuses messages that take longer than the shortest period."""
     values = {axis.name: axis.values for axis in axes}
-    longest = max(parse_latency(str(text))[1] for text in values.get("latency", (LATENCY,)))
+    given = [str(text) for text in values.get("latency", (LATENCY,)) if text != AS_TILES]
+    longest = max(
+        (parse_latency(text)[1] for text in given), default=0.0
+    )  # tiles take what their clocks allow
     drift = max(float(ppm) for ppm in values.get("ppm", (0.0,))) / 1e6
     if longest >= 1 - drift:
         raise UsageError(

@@ -17,11 +17,12 @@ from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.library import library as emulator_library
 from tilenca.model.cost import frame_bytes
 from tilenca.model.file import Model
+from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.settings import Settings
 from tilenca.shapes.batch import Drawings
 from tilenca.shapes.file import UNKNOWN
 from tilenca.simulator import core_library
-from tilenca.simulator.conditions import Conditions, Fault, parse_latency
+from tilenca.simulator.conditions import Conditions, Fault, latency_of
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.simulator import Simulator
 from tilenca.sweep.axes import FAST, STEP_S, Point
@@ -111,7 +112,7 @@ def _simulate(luggage: Luggage, block: Block) -> Counts:
         lost=point["lost"],  # type: ignore[arg-type]
         dead=float(point["dead"]),
         drift=float(point["ppm"]) * 1e-6,
-        latency=parse_latency(str(point["latency"])),
+        latency=latency_of(str(point["latency"]), model.dimensions, DEFAULT_PERIOD_MS),
         boot=float(point["boot-spread"]) / STEP_S,
         fault=Fault("stuck", random.integers(sizes), STUCK_AFTER) if point["stuck"] else None,
     )

@@ -1,8 +1,11 @@
 """The displays of emulated tiles, and a verdict on them."""
 
+import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
+from tilenca.base import paths
 from tilenca.emulator.experiment import Emulation
 from tilenca.protocol.sentences import HelloSentence
 from tilenca.shapes.file import UNKNOWN, Task
@@ -98,19 +101,24 @@ def _word(label: str) -> str:
     return {"": "nothing", UNKNOWN: "a dash"}.get(label, label)
 
 
-def mismatch(emulation: Emulation, task: Task) -> str | None:
-    """The remedy if wrong tiles run a model of other shapes; None without a sign of that."""
+def mismatch(emulation: Emulation, task: Task, trained: Path | None = None) -> str | None:
+    """The remedy if wrong tiles run a model of other shapes; None without a sign of that.
+
+    `trained` is the folder of a model of these shapes, if there is one.
+    """
     hello = emulation.hello
     foreign = {emulation.shown(tile) for tile in emulation.array} - {"", UNKNOWN, *task.labels}
     classes = len(task.labels), len({*task.labels, UNKNOWN})
     if hello is None or emulation.all_right or (hello.classes in classes and not foreign):
         return None
-    return foreign_firmware(hello, task)
+    return foreign_firmware(hello, task, trained)
 
 
-def foreign_firmware(hello: HelloSentence, task: Task) -> str:
-    """What to say of a firmware that was made for other drawings."""
-    return (
-        f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)}); take "
-        "the one trained on that file: tilenca export --model DIR --build, then tilenca emulate --model DIR"
-    )
+def foreign_firmware(hello: HelloSentence, task: Task, trained: Path | None = None) -> str:
+    """What to say of a firmware that was made for other drawings; `trained`: see `mismatch`."""
+    fact = f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)})"
+    if trained is None:
+        return f"{fact}; make one that is: tilenca make {shlex.quote(str(task.path))}"
+    place = shlex.quote(str(trained))
+    first = "" if paths.model_elf(trained).exists() else f"tilenca export --model {place} --build, then "
+    return f"{fact}; take the one that is: {first}tilenca emulate --model {place}"

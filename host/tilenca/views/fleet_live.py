@@ -97,7 +97,10 @@ class LiveView:
         (first_s, first), (last_s, last) = self._counted[0], self._counted[-1]
         parts = [
             f"{len(cells)} tiles",
-            ", ".join(f"{count} show {label or 'nothing'}" for label, count in shown.most_common()),
+            ", ".join(
+                f"{count} show{'s' * (count == 1)} {label or 'nothing'}"
+                for label, count in shown.most_common()
+            ),
             *_troubles(cells),
             f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
             _counted(sum(view.damaged for view in views), "damaged line"),

@@ -103,13 +103,14 @@ def of_recording(path: Path) -> Reel:
         raise UsageError(
             f"{path}: has runs of {', '.join(shapes)}, one after the other; film the recording of one shape"
         )
-    choice = Choice(path, ())
+    grid = Grid()
+    choice = Choice(path, (), grid.lay)
     events = list(choice)
     choice.complain(0.0)
     views = [view for view in _played(events) if view.tile is not None]
     if not views:
         raise TilencaError(f"{path}: no tile says in it what it shows; record with --record for longer")
-    places = _places(events, {view.port for view in views})
+    places = _places(events, grid, {view.port for view in views})
     shown = list(_looks(events, tuple(places)))
     pictures = [
         Picture(f"{begins_s:.1f} s", _agree(looks), looks, min(max(ends_s - begins_s, LEAST_S), MOST_S))
@@ -137,7 +138,10 @@ def _staying(last: Picture) -> Picture:
 def _verdict(pictures: Sequence[Picture], agreed_at: int | None) -> str:
     last = Counter(look.label or "nothing" for look in pictures[-1].looks if look is not None)
     if agreed_at is None:
-        return ", ".join(f"{count} show {label}" for label, count in last.most_common()) or "all silent"
+        return (
+            ", ".join(f"{count} show{'s' * (count == 1)} {label}" for label, count in last.most_common())
+            or "all silent"
+        )
     return f"all show {next(iter(last))} from {pictures[agreed_at].caption}"
 
 
@@ -153,15 +157,22 @@ def _played(events: Iterable[Event]) -> list[TileView]:
     return list(fleet.tiles.values())
 
 
-def _places(events: Sequence[Event], ports: set[str]) -> dict[str, Cell]:
-    """The place of each port, as the tiles say in the end; rows and columns from 0."""
-    fleet, grid = Fleet(), Grid()
+def _places(events: Sequence[Event], grid: Grid, ports: set[str]) -> dict[str, Cell]:
+    """The place of each port, as the recording or the tiles say in the end; rows and columns from 0.
+
+    A tile whose place is recorded has one, even if it never says anything.
+    """
+    fleet = Fleet()
     for number, event in enumerate(events, start=1):
         fleet.take(event)
         if number % len(ports) == 0:
             grid.cells(fleet, event.time_s)  # it remembers neighbours that fall silent later
     cells = grid.cells(fleet, events[-1].time_s)
-    lie = {cell.port: place for place, cell in cells.items() if cell.port in ports}
+    lie = {
+        cell.port: place
+        for place, cell in cells.items()
+        if cell.port is not None and (cell.port in ports or cell.port not in fleet.tiles)
+    }
     top, left = min(row for row, _ in lie.values()), min(col for _, col in lie.values())
     placed = {port: (row - top, col - left) for port, (row, col) in lie.items()}
     return dict(sorted(placed.items(), key=lambda one: one[1]))

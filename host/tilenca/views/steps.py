@@ -111,6 +111,14 @@ class Steps:
         if self.bars is not None:
             self.bars.note(name, f"about {time_text(seconds)}")
 
+    def expected(self) -> str:
+        """How long each step that has not begun will take, in words; nothing where nobody knows."""
+        return ", ".join(
+            f"{name} {'at most' if name == self._at_most else 'about'} {time_text(step.expected_s)}"
+            for name, step in self._steps.items()
+            if step.expected_s and step.began_s is None
+        )
+
     def begin(self, name: str) -> None:
         """The step begins."""
         step = self._steps[name]
