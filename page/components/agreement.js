@@ -34,7 +34,7 @@ function timeText(seconds, step) {
   return `${seconds.toFixed(digits)} s`;
 }
 
-/** The time at the right end of the slider below the chart, which begins at 0; null: time does not go back here. @param {Tiles} tiles */
+/** The time at the right end of the slider below the chart, which begins at 0; null: time does not go back here. @param {Pick<Tiles, "end">} tiles */
 export const spanOf = ({ end }) => (end === null ? null : Math.max(end, LEAST_S));
 
 /** @typedef {{text: string, line: string, band: string, font: string, ground: string}} Ink */
