@@ -10,8 +10,8 @@ from support.browser import SIZES, Visit, new_visit
 from support.page_server import PageServer
 
 SAME_CLOCKS = """() => {
-  const [left, right] = [frames[0], frames[1]].map((frame) => frame.document.getElementById("clock").textContent);
-  return left === right;
+  const clock = (frame) => frame.document.getElementById("clock").textContent;
+  return clock(frames[0]) === clock(frames[1]);
 }"""
 
 
