@@ -37,7 +37,7 @@ class Run {
     const field = (text, control) => element("label", { title: control.title }, text, control);
     const title = name[0].toUpperCase() + name.slice(1);
     this.root = element("section", { class: "run", "aria-label": `The ${name} run` },
-      element("details", { open: !matchMedia("(max-width: 760px)").matches },
+      element("details", { open: !matchMedia("(max-width: 760px), (max-height: 560px)").matches },
         element("summary", {}, element("h2", {}, title), element("span", { class: "summary" }, "Settings")),
         element("form", { onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
           field("Model", this.model), field("Drawing", this.shape), field("Lost bytes (%)", this.loss), field("Seed", this.seed))),
@@ -232,9 +232,8 @@ function update() {
   keepTogether();
   timeline.update(performance.now());
   const [left, right] = runs;
-  if (!left.isThere || !right.isThere) return;
-  setText(byId("difference"), differenceWords(left.settings, right.settings));
-  if (left.now && right.now) setText(byId("result"), resultWords(left.now, right.now));
+  if (left.isThere && right.isThere) setText(byId("difference"), differenceWords(left.settings, right.settings));
+  setText(byId("result"), left.now && right.now ? resultWords(left.now, right.now) : `Waiting for the ${left.now ? "right" : "left"} run`);
 }
 
 /** @param {Wish} wish of a hand in one of the frames */
