@@ -6,7 +6,7 @@ import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
 import { lostWords } from "./components/connection.js";
 import { bring, byId } from "./components/dom.js";
-import { obeyParent, tellParent } from "./components/framed.js";
+import { ask, isCompared, obeyParent, tellNow, tellParent } from "./components/framed.js";
 import { Drawings } from "./components/drawings.js";
 import { FleetPanel } from "./components/fleet.js";
 import { Help } from "./components/help.js";
@@ -150,7 +150,7 @@ const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
 const agreement = new Agreement(tiles, (seconds) => timeline.go(seconds));
-const timeline = new Timeline(tiles, (seconds) => send({ do: "seek", seconds }));
+const timeline = new Timeline(tiles, (seconds) => (isCompared ? ask({ seek: seconds }) : send({ do: "seek", seconds })));
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
   links() {
@@ -192,9 +192,9 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
 });
 const help = new Help(byId("top-deeds"));
 listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1), () => help.show());
-obeyParent(deeds);
-// Only the board and time, for a lesson or an article.
-document.body.toggleAttribute("data-embed", new URLSearchParams(location.search).has("embed"));
+obeyParent(deeds, send);
+// Only the board and time, for a lesson or an article; where two are compared, the board and its agreement.
+if (new URLSearchParams(location.search).has("embed")) document.body.dataset.embed = isCompared ? "compare" : "";
 
 /** Another drawing, with its middle where that of the tiles is. @param {Drawing} drawing */
 function slideUnder(drawing) {
@@ -239,6 +239,7 @@ function remember() {
   const before = run.otherModel();
   if (before && run.isOwn) notice.say(`The link is of model ${before}; these tiles run ${run.start?.model}, and may differ.`);
   drawings.mark(run.remember());
+  tellNow(tiles);
 }
 
 /** @param {StreamEvent[]} events */
@@ -266,6 +267,7 @@ function show(events) {
   timeline.update(now);
   fleet.update(now);
   usb.update();
+  tellNow(tiles);
 }
 
 /** A source is there: shows what it can do, and begins a run, unless its tiles run by themselves. */

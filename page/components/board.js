@@ -192,9 +192,19 @@ export class Board {
     this.root.classList.add("holding");
     this.root.classList.toggle("out", place === null);
     const what = ports.length > 1 ? "them" : "it";
+    const aims = place && this.landing(ports, place);
     byId("box").hidden = false;
-    setText(byId("box"), place ? `Drag ${what} off the board to take ${what} out` : `Let go to take ${what} out`);
-    for (const [key, spot] of this.spots) spot.classList.toggle("aim", ports.length === 1 && key === place?.join());
+    if (!place) setText(byId("box"), `Let go to take ${what} out`);
+    else setText(byId("box"), aims ? `Drag ${what} off the board to take ${what} out` : "There is no room here");
+    for (const [key, spot] of this.spots) spot.classList.toggle("aim", aims?.includes(key) ?? false);
+  }
+
+  /** Where tiles in the hand would land, "row,col"; null where others lie. @param {string[]} ports the first one is under the pointer @param {Place} place of the pointer */
+  landing(ports, place) {
+    const places = ports.map((port) => this.tiles.byPort.get(port)?.place ?? place);
+    const [rows, cols] = [place[0] - places[0][0], place[1] - places[0][1]];
+    if (!isFree(this.tiles, { ports, rows, cols })) return null;
+    return places.map(([row, col]) => `${row + rows},${col + cols}`);
   }
 
   drop() {

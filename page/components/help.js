@@ -1,15 +1,26 @@
-// The list of keys, as a dialog.
+// What hands and keys do, as a dialog.
 
 import { element } from "./dom.js";
 
-/** Keys, what they do, and the commands that the source needs for it. @type {[string, string, string?][]} */
+/** What hands do, what comes of it, and the commands that the source needs for it. @type {[string, string, string?][]} */
+const HANDS = [
+  ["Click a tile", "look into it"],
+  ["Drag a tile", "move it; off the board, pull it out", "move"],
+  ["Click an empty place", "put a tile in", "put"],
+  ["Group: drag a tile", "move all that hangs together with it; so does Shift with Hand", "shift"],
+  ["Group: drag across", "from an empty place over cables: what hangs by these only breaks apart", "shift"],
+  ["Draw: drag", "from an empty place, put tiles in; from a tile, rub out", "put"],
+  ["Knife: drag across", "cut cables; click one to mend it", "cut"],
+];
+
+/** Keys, what they do, and the same. @type {[string, string, string?][]} */
 const KEYS = [
   ["Tab", "to the board, and to each control"],
   ["← ↑ → ↓", "on the board: to the place beside"],
   ["Enter", "on a tile: look into it; on an empty place: put a tile in"],
   ["Delete", "pull the tile out", "pull"],
-  ["Shift and an arrow key", "cut or mend the cable on that side", "cut"],
-  ["Ctrl and an arrow key", "move all that hangs together", "shift"],
+  ["Shift and an arrow", "cut or mend the cable on that side", "cut"],
+  ["Ctrl and an arrow", "move all that hangs together", "shift"],
   ["Esc", "close the tile's details"],
   ["H, G, D, K", "Hand, Group, Draw, Knife", "put"],
   ["P", "pause or go on; so does Space, unless the keyboard is on a button, which it presses", "pace"],
@@ -25,17 +36,20 @@ const KEYS = [
 export class Help {
   /** @param {HTMLElement} top for its button */
   constructor(top) {
-    const rows = KEYS.flatMap(([key, words, needs]) => {
+    /** @param {[string, string, string?][]} lines */
+    const list = (lines) => element("dl", { class: "keys" }, ...lines.flatMap(([key, words, needs]) => {
       /** @type {Record<string, string>} */
       const offered = needs ? { "data-needs": needs } : {};
       return [element("dt", offered, element("kbd", {}, key)), element("dd", offered, words)];
-    });
+    }));
     this.dialog = element("dialog", { class: "share", id: "keys", "aria-labelledby": "keys-title" },
-      element("header", {}, element("h2", { id: "keys-title" }, "Keys"),
+      element("header", {}, element("h2", { id: "keys-title" }, "Help"),
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
-      element("dl", { class: "keys" }, ...rows));
+      element("div", { class: "helps" },
+        element("section", {}, element("h3", {}, "On the board"), list(HANDS)),
+        element("section", {}, element("h3", {}, "Keys"), list(KEYS))));
     document.body.append(this.dialog);
-    top.append(element("button", { type: "button", class: "help", title: "Keys (?)", "aria-label": "Keys", onclick: () => this.show() }, "?"));
+    top.append(element("button", { type: "button", class: "help", title: "Help (?)", "aria-label": "Help", onclick: () => this.show() }, "?"));
   }
 
   show() {

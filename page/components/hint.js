@@ -7,7 +7,7 @@ import { setText } from "./dom.js";
 /** @type {Record<Tool, string>} */
 const WORDS = {
   hand: "Drag a tile off the board",
-  group: "Drag all that hangs together",
+  group: "Drag a tile to move all that hangs together; drag across cables to break it apart",
   pencil: "Start on an empty place to put tiles in, on a tile to rub out",
   knife: "Drag across cables; click one to mend",
 };

@@ -11,7 +11,7 @@ const PATIENCE_MS = 3000;
 const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 export class Timeline {
-  /** @param {Tiles} tiles @param {(seconds: number) => void} seek */
+  /** @param {Pick<Tiles, "time" | "end" | "jumps" | "stepS">} tiles @param {(seconds: number) => void} seek */
   constructor(tiles, seek) {
     this.tiles = tiles;
     this.seek = seek;

@@ -35,6 +35,19 @@ export class History {
     return count;
   }
 
+  /** What all tiles show at a time, and since when; null where they do not agree. @param {number} time */
+  agreedAt(time) {
+    /** @type {{since: number | null, label: string}} */
+    const found = { since: null, label: "" };
+    for (const { time: from, counts, total } of this.samples.toReversed()) {
+      if (from > time) continue;
+      const [label, count] = [...counts].find(([one]) => one) ?? ["", 0];
+      if (!count || count !== total || (found.since !== null && label !== found.label)) break;
+      Object.assign(found, { since: from, label });
+    }
+    return found;
+  }
+
   /** Time has come to a moment; one can go to all those up to another. @param {number} time @param {number} [end] */
   pass(time, end) {
     if (end !== undefined && end < this.known) this.forget(end);

@@ -112,7 +112,7 @@ def test_the_keys_are_listed(browser: Browser, server: PageServer, size: str, sc
         assert Axe().run(page).violations_count == 0
         page.keyboard.press("Escape")
         page.locator("#keys").wait_for(state="hidden")
-        page.get_by_role("button", name="Keys").click()
+        page.get_by_role("button", name="Help").click()
         page.locator("#keys").wait_for()
         assert visit.complaints == []
 

@@ -66,6 +66,32 @@ def test_a_click_on_the_chart_goes_to_that_time(visit: Visit, server: PageServer
     assert abs(value - 300) <= 5  # which the clock rounds to 0.30 s
 
 
+def test_a_long_run_has_its_end_in_view_and_all_of_it_below(visit: Visit, server: PageServer) -> None:
+    page = visit.page
+    page.goto(f"{server.url}?draw=1&speed=0&spread=0&until=12")
+    page.get_by_role("button", name="Go on").wait_for()
+    view = page.get_by_label("Time in view")
+    assert view.input_value() == "10"
+    box = page.locator("canvas#agreement").bounding_box()
+    assert box is not None
+
+    def click(share: float, below_top: float) -> None:
+        page.mouse.click(box["x"] + 8 + (box["width"] - 16) * share, box["y"] + below_top)
+
+    def wait_for_clock(seconds: float) -> None:
+        visit.wait_until(
+            f"Math.abs(parseFloat(document.getElementById('clock').textContent) - {seconds}) < 0.03"
+        )
+
+    click(0.25, 20)
+    wait_for_clock(2 + 0.25 * 10)
+    click(0.25, box["height"] - 3)
+    wait_for_clock(0.25 * 12)
+    view.select_option("Whole run")
+    click(0.5, 20)
+    wait_for_clock(0.5 * 12)
+
+
 def test_changes_of_mind_are_those_until_now(visit: Visit, server: PageServer) -> None:
     opened(visit, server)
     told = "document.getElementById('agreement-text').textContent"
