@@ -76,9 +76,8 @@ RECIPES: dict[str, Recipe] = {
     # Goes on from the weights of a model by `forms`, in smaller steps, and with more that shakes a tile.
     "refine": replace(
         FORMS,
-        iterations=90_000,
+        iterations=96_000,
         learning_rate=4e-4,
-        limited_from=0.0,
         switch=0.34,
         settled=0.4,
         undisturbed_batch=14,
