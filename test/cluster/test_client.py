@@ -73,7 +73,9 @@ def test_without_bokeh_it_says_that_there_is_no_dashboard(here: str, monkeypatch
 
     monkeypatch.setattr(metadata, "version", version)
     with open_cluster(here, 1) as cluster:
-        assert cluster.dashboard().startswith("no dashboard: bokeh is not installed where the scheduler runs")
+        assert cluster.dashboard().startswith(
+            "; no dashboard: bokeh is not installed where the scheduler runs"
+        )
 
 
 def test_no_scheduler_there_is_a_line(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from tilenca.base import paths
 from tilenca.base.errors import UsageError
 from tilenca.commands.origin import (
     folder_of,
+    knows_no_damage,
     model_with_id,
     own_drawings,
     own_shapes,
@@ -85,6 +86,13 @@ def test_metadata_of_any_form_name_files_or_are_refused_in_one_line(metadata: di
     assert said == "" or said.startswith(f"{folder}: was trained on ")
     assert "\n" not in said
     assert why_wrong(model, load_task(paths.DEFAULT_SHAPES)).count("\n") == 0
+
+
+def test_a_model_that_never_met_damage_says_so() -> None:
+    assert knows_no_damage(DIGITS) is None
+    assert knows_no_damage(made_of({})) is None
+    told = knows_no_damage(made_of({"recipe": {"damaged": 0.0}})) or ""
+    assert "never met a drawing with a tile missing" in told
 
 
 def test_files_that_are_given_come_first() -> None:

@@ -83,7 +83,9 @@ def test_a_model_of_other_shapes_is_told_with_the_remedy() -> None:
     remedy = mismatch(emulation, letters)
     assert remedy is not None
     assert f"is not for {letters.path}" in remedy
-    assert remedy.endswith(f"; make one that is: tilenca make {letters.path}")
+    assert remedy.endswith(
+        f"; make one that is: tilenca make {letters.path} (--force, if it made another one)"
+    )
     remedy = mismatch(emulation, letters, Path("models/no such"))
     assert str(remedy).endswith(
         "tilenca export --model 'models/no such' --build, then tilenca emulate --model 'models/no such'"

@@ -197,5 +197,5 @@ def test_a_training_that_ended_early_says_why(capsys: pytest.CaptureFixture[str]
         tell(Progress(1, 100, 0.1, 1.0, (8, 8, 0.0)))
         tell(Progress(2, 50, 0.1, 0.5, (3, 8, 0.1)))
     assert capsys.readouterr().err.endswith(
-        ": 100 iterations of 200, since all targets held; 50 iterations\n"
+        ": 100 iterations of 200, since all targets that it looks at on the way held; 50 iterations\n"
     )

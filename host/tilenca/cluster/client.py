@@ -154,17 +154,19 @@ class Cluster:
                 yield f"worker {address}", result
 
     def dashboard(self) -> str:
-        """Where Dask's dashboard is, or why there is none."""
-        where = metadata.version if self._local else None
+        """Where Dask's dashboard is, or why there is none; of workers on this machine only where it is."""
         try:
-            if where is not None:
-                where("bokeh")
+            if self._local:
+                metadata.version("bokeh")
             else:
                 self.client.run_on_scheduler(metadata.version, "bokeh")
         except metadata.PackageNotFoundError:
-            who = "" if self._local else " where the scheduler runs"
-            return f"no dashboard: bokeh is not installed{who}; for one: pip install bokeh"
-        return f"dashboard: {self.client.dashboard_link}"
+            if self._local:
+                return ""
+            return (
+                "; no dashboard: bokeh is not installed where the scheduler runs; for one: pip install bokeh"
+            )
+        return f"; dashboard: {self.client.dashboard_link}"
 
     def close(self) -> None:
         """Ends the connection, and the workers of its own."""

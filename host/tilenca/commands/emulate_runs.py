@@ -17,7 +17,7 @@ from rich.console import Console
 from tilenca.base.project import place_of
 from tilenca.base.stdio import warn
 from tilenca.commands.emulate_states import StateCheck
-from tilenca.commands.origin import why_wrong
+from tilenca.commands.origin import knows_no_damage, why_wrong
 from tilenca.emulator.debug import attend, debuggers, frames, waveforms
 from tilenca.emulator.eeprom_files import save_eeprom
 from tilenca.emulator.experiment import Emulation
@@ -78,6 +78,8 @@ def result_of(args: argparse.Namespace, emulation: Emulation, task: Task, starte
     judged = judge(emulation, expected)
     if judged == WRONG and args.own_model is not None and not (args.foreign or args.fault):
         notes.append(why_wrong(args.own_model, task, args.size))
+    if judged == WRONG and args.own_model is not None and not all(tile.powered for tile in emulation.array):
+        notes += filter(None, [knows_no_damage(args.own_model)])
     if args.others and args.own_model is not None and not args.foreign:
         notes.append(_of_one_run(args, task))
     report = emulation.report(time.monotonic() - started) | {"verdict": judged}

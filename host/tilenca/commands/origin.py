@@ -180,6 +180,19 @@ def why_wrong(model: Model, task: Task, size: Size | None = None) -> str:
     return f"{made}; more reasons: docs/how-to/debug.md"
 
 
+def knows_no_damage(model: Model) -> str | None:
+    """What to say where a tile is off and the others are wrong; None where training knew missing tiles."""
+    damaged: object = None
+    with suppress(TypeError, KeyError):
+        damaged = model.metadata["recipe"]["damaged"]
+    if damaged != 0:
+        return None
+    return (
+        f"model {model.model_id:04X} never met a drawing with a tile missing, and may take what is left for "
+        f"another one; a recipe that knows damage: {FULL}"
+    )
+
+
 def without_a_dash(model: Model) -> str | None:
     """A warning about a model that knows no drawings but its own; None where it shows a dash on others."""
     if UNKNOWN in model.labels:

@@ -145,7 +145,7 @@ def _measure(args: argparse.Namespace, calls: "list[Call]", folder: "Folder") ->
         )
         try:
             with open_cluster(args.scheduler, args.jobs or processors()) as cluster:
-                warn(f"{cluster.workers()} workers; {cluster.dashboard()}")
+                warn(f"{cluster.workers()} workers{cluster.dashboard()}")
                 results |= measure(missing, folder, cluster, told)
         except KeyboardInterrupt:
             raise InterruptedRunError(

@@ -161,7 +161,7 @@ def _announce(plan: "Plan", progress: "Progress", cluster: Any) -> None:
     had = f", {progress.done:,} of them measured before" if progress.done else ""
     warn(
         f"{len(plan.cells):,} cells, {len(plan.rows):,} drawings in them, {progress.runs:,} runs{had}; "
-        f"{cluster.workers()} workers; {cluster.dashboard()}"
+        f"{cluster.workers()} workers{cluster.dashboard()}"
     )
 
 

@@ -49,7 +49,7 @@ def train_on_cluster(
 
     begins = [Slice(job, job.checkpoint.read_bytes() if _resumes(job) else None) for job in jobs]
     with open_cluster(scheduler, 1, partial(check_torch, TORCH)) as cluster:
-        warn(f"{len(jobs)} seeds; {cluster.workers()} workers; {cluster.dashboard()}")
+        warn(f"{len(jobs)} seeds; {cluster.workers()} workers{cluster.dashboard()}")
         with warnings.catch_warnings():
             # A checkpoint of some 30 MB every five minutes: Dask's advice about large graphs is for more.
             warnings.filterwarnings("ignore", message="Sending large graph")

@@ -190,9 +190,13 @@ class Emulation:
         while not self.done():
             if self.array.time_s > limit_s:
                 slowest = min(self._standing(), key=self._updates, default=0)
+                done = self._updates(slowest)
+                unread = (
+                    "" if done else "; a tile that hangs, or whose clock is 4 % off, is not understood on USB"
+                )
                 raise TilencaError(
-                    f"shape '{self.shape.name}': tile {slowest + 1} reported {self._updates(slowest)} "
-                    f"updates in {limit_s:.1f} s instead of {self.settings.updates}; give --seconds to run on"
+                    f"shape '{self.shape.name}': tile {slowest + 1} reported {done} updates in "
+                    f"{limit_s:.1f} s instead of {self.settings.updates}; give --seconds to run on{unread}"
                 )
             left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
             on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))

@@ -99,8 +99,8 @@ def refuse_other(path: Path, theirs: State, ours: State) -> None:
     if any(theirs.get(key) != value for key, value in ours.items()):
         differing = list(_differences(theirs, ours)) or ["made with other widths"]
         raise UsageError(
-            f"{path}: {'; '.join(differing)}; give the arguments of the run to resume, or train into another "
-            "directory"
+            f"{path}: {'; '.join(differing)}; give the arguments of the run to resume, --force to begin "
+            "anew, or another directory"
         )
 
 

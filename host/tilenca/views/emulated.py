@@ -81,7 +81,7 @@ def _faults(emulation: Emulation) -> Iterator[str]:
         if len(part) == 1:
             yield f"tile {_numbers(part)} is joined to no other: it answers for itself"
         else:
-            yield f"tiles {_numbers(part)} are joined to no other: they answer for their part"
+            yield f"tiles {_numbers(part)} are joined to each other only: a part that answers for itself"
 
 
 def _numbers(tiles: Sequence[int]) -> str:
@@ -118,7 +118,8 @@ def foreign_firmware(hello: HelloSentence, task: Task, trained: Path | None = No
     """What to say of a firmware that was made for other drawings; `trained`: see `mismatch`."""
     fact = f"the firmware's model {hello.model_id:04X} is not for {task.path} ({' '.join(task.labels)})"
     if trained is None:
-        return f"{fact}; make one that is: tilenca make {shlex.quote(str(task.path))}"
+        again = f"tilenca make {shlex.quote(str(task.path))}"
+        return f"{fact}; make one that is: {again} (--force, if it made another one)"
     place = shlex.quote(str(trained))
     first = "" if paths.model_elf(trained).exists() else f"tilenca export --model {place} --build, then "
     return f"{fact}; take the one that is: {first}tilenca emulate --model {place}"

@@ -244,7 +244,11 @@ class Steps:
 
 def _ended(news: Progress, total: int) -> str:
     held, asked, _ = news.check or (0, 1, 0.0)
-    early = f" of {total:,}, since all targets held" if news.iteration < total and held == asked else ""
+    early = (
+        f" of {total:,}, since all targets that it looks at on the way held"
+        if news.iteration < total and held == asked
+        else ""
+    )
     return f"{news.iteration:,} iterations{early}"
 
 
