@@ -5,6 +5,8 @@ PYTHON  := .venv/bin/python
 TILENCA := .venv/bin/tilenca
 # A program of tools/: $(TOOL) bench.kernel
 TOOL    := PYTHONPATH=tools $(PYTHON) -m
+# Tests wait for serial lines and browsers half of their time: one more of them than there are processors.
+WORKERS ?= $(shell echo $$(($$(nproc) + 1)))
 ENV     := megaatmega2560
 # Makes the emulator faster on an image, in the background; nothing waits for it.
 TRANSLATE := $(PYTHON) -P -m tilenca.emulator.translator --background
@@ -49,7 +51,7 @@ test: setup-test ## run every test: the firmware's core on this machine, then ho
 	@$(TRANSLATE) $(ELF) >/dev/null 2>&1 </dev/null &
 	@$(TOOL) release.wheel >&2
 	@$(PIO) test -e native
-	@$(PYTHON) -m pytest -n auto --dist worksteal
+	@$(PYTHON) -m pytest -n $(WORKERS) --dist worksteal
 
 web: setup-web ## build the emulator and the simulator for browsers, into build/web/bundle; needs emscripten
 	@$(PIO) run -s -e $(ENV)
