@@ -120,7 +120,7 @@ class EmulatedSource:
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
         self._release()
-        do_by_hand(self._board, self._array, command)
+        do_by_hand(self._board, command)
         self._timeline.note(self._array.time_s, command)
         self._keep()
         self._tell_pace()  # another future begins
@@ -129,7 +129,7 @@ class EmulatedSource:
     def _do_planned(self, planned: commands.Deed) -> None:
         """What a hand does at its time; what cannot be done is told, and forgotten."""
         try:
-            do_by_hand(self._board, self._array, planned[1])
+            do_by_hand(self._board, planned[1])
         except UsageError as error:
             self._timeline.forget(planned)
             self._events.append(refused_event(0.0, str(error)))
