@@ -24,6 +24,7 @@ import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { readAddress } from "./stream/address.js";
+import { deedWords, isDeed } from "./stream/deeds.js";
 import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
@@ -35,14 +36,13 @@ import { Tiles } from "./stream/tiles.js";
 
 // A little before a deed: more than the emulator's quantum of time, and less than a tile needs for anything.
 const MOMENT_S = 1e-4;
-/** @param {number} time */
-const undone = (time) => `Back to just before what hands did at ${time.toFixed(2)} s. Go on, and it happens again; do something else, and it never was.`;
 
 export const tiles = new Tiles();
 const recorder = new Recorder();
 const run = new Run(tiles, (command) => source.send(command));
 let lastRefused = "";
 let wasBuilding = false;
+let jumps = 0;
 
 /** @param {Command} command */
 function send(command) {
@@ -50,10 +50,23 @@ function send(command) {
     notice.say(refusal(tiles));
     return;
   }
+  if (isDeed(command)) notice.pass();
   left.note(command);
   run.note(command);
   hint.note(command.do);
   source.send(command);
+}
+
+/** What takes the last deed back, until it is sent; in a comparison it goes through the page around. @type {{seconds: number, goesOn: boolean} | null} */
+let takenBack = null;
+
+/** @param {number} seconds */
+function seek(seconds) {
+  const isUndo = takenBack?.seconds === seconds;
+  const goesOn = isUndo && takenBack?.goesOn;
+  takenBack = null;
+  send({ do: "seek", seconds, ...(isUndo && { forget: true }) });
+  if (goesOn) deeds.pace(tiles.pace.speed, false);
 }
 
 const deeds = {
@@ -112,16 +125,19 @@ const deeds = {
     if (!tiles.pace.paused) deeds.pace(tiles.pace.speed, true);
     send({ do: "step", seconds: tiles.stepS });
   },
-  /** To just before the last deed until now; it happens again, unless a hand does something else. */
+  /** Takes the last deed until now back: the tiles run on from there without it. */
   undo() {
+    if (!tiles.can("arrange")) return notice.say(refusal(tiles));
     const last = tiles.deeds.findLast(({ time }) => time <= tiles.time + MOMENT_S);
     if (tiles.end === null) {
       notice.say("Time does not go back here: undo it by hand.");
     } else if (!last || last.time <= MOMENT_S) {
       notice.say("There is nothing to take back.");
     } else {
-      timeline.go(last.time - MOMENT_S);
-      notice.say(undone(last.time));
+      takenBack = { seconds: last.time - MOMENT_S, goesOn: !tiles.pace.paused };
+      timeline.go(takenBack.seconds);
+      const others = tiles.deeds.filter(({ time }) => time > last.time - MOMENT_S && time <= last.time).length - 1;
+      notice.say(`Taken back: ${deedWords(last.deed)}${others ? `, and ${others} more` : ""}.`);
     }
   },
   /** One update back. */
@@ -150,7 +166,7 @@ const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
 const agreement = new Agreement(tiles, (seconds) => timeline.go(seconds));
-const timeline = new Timeline(tiles, (seconds) => (isCompared ? ask({ seek: seconds }) : send({ do: "seek", seconds })));
+const timeline = new Timeline(tiles, (seconds) => (isCompared ? ask({ seek: seconds }) : seek(seconds)));
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
   links() {
@@ -192,7 +208,7 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
 });
 const help = new Help(byId("top-deeds"));
 listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1), () => help.show());
-obeyParent(deeds, send);
+obeyParent(deeds, seek, send);
 // Only the board and time, for a lesson or an article; where two are compared, the board and its agreement.
 if (new URLSearchParams(location.search).has("embed")) document.body.dataset.embed = isCompared ? "compare" : "";
 
@@ -249,6 +265,10 @@ function show(events) {
   tiles.take(events);
   recorder.take(events);
   if (isFirst) begin();
+  if (tiles.jumps !== jumps) {
+    jumps = tiles.jumps;
+    bar.showNoise(run.noiseNow());
+  }
   if (tiles.refused) {
     notice.say(tiles.refused);
     lastRefused = tiles.refused;

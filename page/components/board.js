@@ -39,6 +39,7 @@ export class Board {
     /** Ports of the tiles in the hand. @type {string[]} */
     this.lifted = [];
     this.isAwake = false;
+    this.jumps = 0;
     /** Whether the view was chosen for one who draws. */
     this.isDrawing = false;
     this.hands = new Hands(root, tiles, this.view, {
@@ -79,6 +80,8 @@ export class Board {
       if (tile) this.views.get(port)?.update(tile, port === this.selected, this.lens);
     }
     this.tiles.dirty.clear();
+    if (this.jumps !== this.tiles.jumps) this.cables.flights = []; // they were of another time
+    this.jumps = this.tiles.jumps;
     this.cables.launch(this.tiles.pulses, this.tiles, this.view, now);
     this.tiles.pulses = [];
     this.cables.draw(this.tiles, this.view, now);

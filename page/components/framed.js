@@ -30,8 +30,8 @@ function tell(message) {
 /** Asks for time of both runs. @param {Wish} wish */
 export const ask = (wish) => tell({ wish });
 
-/** @param {TimeDeeds} deeds @param {(command: Command) => void} send */
-export function obeyParent(deeds, send) {
+/** @param {TimeDeeds} deeds @param {(seconds: number) => void} go to a time @param {(command: Command) => void} send */
+export function obeyParent(deeds, go, send) {
   if (!isCompared) return;
   const own = { ...deeds };
   Object.assign(deeds, /** @type {TimeDeeds} */ ({
@@ -45,7 +45,7 @@ export function obeyParent(deeds, send) {
     if (restart) own.restart();
     if (pace) own.pace(Number(pace.speed), Boolean(pace.paused));
     if (step) send({ do: "step", seconds: Number(step) });
-    if (seek !== undefined) send({ do: "seek", seconds: Number(seek) });
+    if (seek !== undefined) go(Number(seek));
   });
 }
 

@@ -60,6 +60,33 @@ const KINDS = {
   },
 };
 
+/** @param {unknown} port */
+const tileWords = (port) => `tile ${numberOf(port)}`;
+/** @type {Record<string, string>} */
+const SIDE_WORDS = { N: "north", E: "east", S: "south", W: "west" };
+
+/** What each of them is in words, as what has happened. @type {Record<string, (deed: any) => string>} */
+const WORDS = {
+  put: () => "a tile put in",
+  pull: ({ port }) => `${tileWords(port)} pulled out`,
+  move: ({ port }) => `${tileWords(port)} moved`,
+  shift: ({ ports }) => (ports.length === 1 ? `${tileWords(ports[0])} moved` : `${ports.length} tiles moved together`),
+  arrange: ({ cells }) => `another drawing, of ${cells.length} ${cells.length === 1 ? "tile" : "tiles"}`,
+  cut: ({ port, side, on }) => `cable ${on ? "cut" : "mended"} at ${tileWords(port)}, ${SIDE_WORDS[side]}`,
+  power: ({ port, on }) => `${tileWords(port)} switched ${on ? "on" : "off"}`,
+  freeze: ({ port, on }) => `${tileWords(port)} ${on ? "frozen" : "thawed"}`,
+  turn: ({ port, on }) => `${tileWords(port)} ${on ? "turned" : "turned back"}`,
+  skew: ({ port, ppm }) => `the clock of ${tileWords(port)} ${ppm ? `${Math.abs(ppm)} ppm too ${ppm > 0 ? "fast" : "slow"}` : "right again"}`,
+  reset: ({ port }) => `${tileWords(port)} reset`,
+  noise: ({ loss }) => (loss ? `${Number((100 * loss).toFixed(1))} % of the bytes lost` : "no byte lost any more"),
+  blink: ({ port }) => `${tileWords(port)} blinks`,
+  restart: ({ port }) => `the button of ${tileWords(port)} pressed`,
+  set: ({ name, value, port }) => `${name} ${value} set at ${port === null ? "all tiles" : tileWords(port)}`,
+};
+
+/** A deed in a few words. @param {Command} deed */
+export const deedWords = (deed) => WORDS[deed.do]?.(deed) ?? deed.do;
+
 /** Whether a command changes what the tiles do from then on. @param {Command} command */
 export const isDeed = (command) => Object.hasOwn(KINDS, command.do);
 

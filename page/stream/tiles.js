@@ -96,6 +96,7 @@ export class Tiles {
       this.deeds = [...this.deeds.filter(({ time }) => time <= event.time), { time: event.time, deed: event.deed }];
     } else if (event.jump) {
       this.jump(event.time);
+      if (event.jump.forget) this.deeds = this.deeds.filter(({ time }) => time <= event.time);
     } else if (event.pace) {
       this.pace = event.pace;
       this.time = event.time;

@@ -105,8 +105,8 @@ class EmulatedSource:
                 if self._pace.paused and self._emulation is not None:
                     self._run(seconds)
                     self._pace.set(self._pace.speed, paused=True)
-            case commands.Seek(seconds):
-                self._seek(seconds)
+            case commands.Seek(seconds, forget):
+                self._seek(seconds, forget)
             case commands.Instruct(port, count):
                 self._instruct(port, count)
             case commands.Seen():
@@ -231,8 +231,8 @@ class EmulatedSource:
         size = len(moment.snapshot) + VOICE_BYTES * len(said)
         self._timeline.keep(moment.time_s, _Moment(moment, said), size)
 
-    def _seek(self, time_s: float) -> None:
-        """Goes to a time that the run has been at; all that hands did until then is done."""
+    def _seek(self, time_s: float, forget: bool) -> None:
+        """Goes to a time that the run has been at; what hands did until then is done."""
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
         self._release()
@@ -243,8 +243,10 @@ class EmulatedSource:
             self._teller.restore(moment.said)
         self._pace.set(self._pace.speed, paused=True)
         self._pass_time(time_s - self._array.time_s)
+        if forget:
+            self._timeline.end_at(self._array.time_s)
         self._events = [event for event in self._events if "run" in event or "refused" in event]
-        self._events += [jump_event(self._array.time_s, from_s), *self._teller.all()]
+        self._events += [jump_event(self._array.time_s, from_s, forget), *self._teller.all()]
         self._tell_pace()
 
     # --- what the page is told ---
