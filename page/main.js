@@ -24,7 +24,7 @@ import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { readAddress } from "./stream/address.js";
-import { deedWords, isDeed } from "./stream/deeds.js";
+import { deedMoments, isDeed } from "./stream/deeds.js";
 import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
@@ -128,16 +128,15 @@ const deeds = {
   /** Takes the last deed until now back: the tiles run on from there without it. */
   undo() {
     if (!tiles.can("arrange")) return notice.say(refusal(tiles));
-    const last = tiles.deeds.findLast(({ time }) => time <= tiles.time + MOMENT_S);
+    const last = deedMoments(tiles.deeds).findLast(({ time }) => time <= tiles.time + MOMENT_S);
     if (tiles.end === null) {
       notice.say("Time does not go back here: undo it by hand.");
-    } else if (!last || last.time <= MOMENT_S) {
+    } else if (!last) {
       notice.say("There is nothing to take back.");
     } else {
       takenBack = { seconds: last.time - MOMENT_S, goesOn: !tiles.pace.paused };
       timeline.go(takenBack.seconds);
-      const others = tiles.deeds.filter(({ time }) => time > last.time - MOMENT_S && time <= last.time).length - 1;
-      notice.say(`Taken back: ${deedWords(last.deed)}${others ? `, and ${others} more` : ""}.`);
+      notice.say(`Taken back: ${last.words}.`);
     }
   },
   /** One update back. */

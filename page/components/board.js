@@ -56,7 +56,10 @@ export class Board {
     root.addEventListener("keydown", (event) => this.key(event));
     root.addEventListener("click", (event) => this.click(event));
     root.addEventListener("focusin", (event) => this.focused(event));
-    new ResizeObserver(() => this.arrange()).observe(root);
+    new ResizeObserver(() => {
+      this.arrange();
+      this.wake(); // what it has cleared is drawn again, also while time stands
+    }).observe(root);
   }
 
   /** Shows with the next frame what a hand has changed: a source tells nothing while time stands. */

@@ -87,6 +87,25 @@ const WORDS = {
 /** A deed in a few words. @param {Command} deed */
 export const deedWords = (deed) => WORDS[deed.do]?.(deed) ?? deed.do;
 
+const SAME_S = 1e-4; // what was done while time stood is one
+const MOST_WORDS = 2;
+
+/** The deeds of each moment as one, in words; those of the beginning are none. @param {Deed[]} deeds */
+export function deedMoments(deeds) {
+  /** @type {{time: number, all: string[]}[]} */
+  const moments = [];
+  for (const { time, deed } of deeds) {
+    const last = moments.at(-1);
+    if (time <= SAME_S) continue;
+    if (last && time - last.time < SAME_S) last.all.push(deedWords(deed));
+    else moments.push({ time, all: [deedWords(deed)] });
+  }
+  return moments.map(({ time, all }) => {
+    const more = all.length - MOST_WORDS;
+    return { time, words: [...all.slice(0, MOST_WORDS), ...(more > 0 ? [`${more} more`] : [])].join(", ") };
+  });
+}
+
 /** Whether a command changes what the tiles do from then on. @param {Command} command */
 export const isDeed = (command) => Object.hasOwn(KINDS, command.do);
 
