@@ -94,6 +94,7 @@ export class Agreement {
 
   /** @param {number} now */
   update(now) {
+    this.tell();
     if (now - this.drawn < DRAW_MS) {
       this.later ||= setTimeout(() => this.update(performance.now()), DRAW_MS); // nothing may follow
       return;
@@ -101,6 +102,11 @@ export class Agreement {
     clearTimeout(this.later);
     this.later = 0;
     this.drawn = now;
+    this.draw();
+  }
+
+  /** Says it of the same moment as the verdict and the clock. */
+  tell() {
     const { tiles } = this;
     const { counts, total } = tiles.count();
     const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
@@ -109,7 +115,6 @@ export class Agreement {
     const deeds = deedMoments(tiles.deeds).filter(({ time }) => time <= tiles.time).length;
     const done = deeds ? `, ${deeds} ${deeds === 1 ? "deed" : "deeds"}` : "";
     setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind${done}`);
-    this.draw();
   }
 
   /** The time at a point of the chart, in pixels. @param {number} x @param {number} y */

@@ -80,7 +80,7 @@ export class Board {
     }
     for (const port of this.tiles.dirty) {
       const tile = this.tiles.byPort.get(port);
-      if (tile) this.views.get(port)?.update(tile, port === this.selected, this.lens);
+      if (tile) this.views.get(port)?.update(tile, this.tiles.shown(tile), port === this.selected, this.lens);
     }
     this.tiles.dirty.clear();
     if (this.jumps !== this.tiles.jumps) this.cables.flights = []; // they were of another time
@@ -110,7 +110,7 @@ export class Board {
   look(lens) {
     this.lens = lens;
     this.root.classList.toggle("looks", lens !== null);
-    for (const tile of this.tiles.laid()) this.views.get(tile.port)?.update(tile, tile.port === this.selected, lens);
+    for (const tile of this.tiles.laid()) this.views.get(tile.port)?.update(tile, this.tiles.shown(tile), tile.port === this.selected, lens);
   }
 
   /** Puts everything in its place. */
@@ -138,7 +138,7 @@ export class Board {
         this.root.append(view.button);
       }
       move(view.button, this.view.corner(...tile.place));
-      view.update(tile, tile.port === this.selected, this.lens);
+      view.update(tile, this.tiles.shown(tile), tile.port === this.selected, this.lens);
     }
     for (const port of gone) {
       this.views.get(port)?.button.remove();

@@ -132,8 +132,8 @@ export class Share {
   }
 
   picture() {
-    const painting = { words: this.deeds.words(), lens: this.deeds.lens() };
-    return this.attempt(async () => download(await boardPicture(this.tiles, painting), this.nameOf("png")));
+    const [painting, name] = [{ words: this.deeds.words(), lens: this.deeds.lens() }, this.nameOf("png")]; // of one moment
+    return this.attempt(async () => download(await boardPicture(this.tiles, painting), name));
   }
 
   /** The last seconds, at the speed of the page. */
