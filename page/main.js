@@ -1,6 +1,7 @@
 // The page: one source of events, one picture of the tiles, and the hands that reach in.
 
 /** @import { Command, Drawing, Place, StreamEvent } from "./stream/source.js" */
+import { Aside } from "./components/aside.js";
 import { Agreement } from "./components/agreement.js";
 import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
@@ -43,6 +44,8 @@ const run = new Run(tiles, (command) => source.send(command));
 let lastRefused = "";
 let wasBuilding = false;
 let jumps = 0;
+/** The run that the page goes back to from a recording. @type {Aside | null} */
+let aside = null;
 
 /** @param {Command} command */
 function send(command) {
@@ -178,10 +181,11 @@ new Share(byId("top-deeds"), tiles, recorder, {
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
   replay: (events, isCut) => usb.release(() => {
-    source.close();
+    if (!aside && tiles.end !== null && run.isOwn && run.hasBegun) aside = new Aside(source, ears, tiles, run, recorder);
+    else source.close();
     const cut = isCut ? " Its last line was cut off; it ends before that." : "";
     notice.say(`A recording: go to any time of it.${cut}`);
-    source = openRecording(events, listener);
+    listenTo((listener) => openRecording(events, listener));
   }),
 });
 const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
@@ -202,7 +206,8 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
   choose(wanted) {
     deeds.select(null);
     source.close();
-    source = (wanted ?? open)(listener);
+    leaveAside();
+    listenTo(wanted ?? open);
   },
 });
 const help = new Help(byId("top-deeds"));
@@ -243,7 +248,8 @@ function chooseModel(model) {
   run.start = null;
   run.wantedModel = "";
   source.close();
-  source = open(listener);
+  leaveAside();
+  listenTo(open);
 }
 
 /** The whole address with a query, from `?` on. @param {string} query */
@@ -315,21 +321,57 @@ function tellFailed() {
   notice.stay(`The firmware of ${tiles.model} was not built: ${tiles.reason}. ${other}.`);
 }
 
-/** @type {import("./stream/source.js").Listener} */
-const listener = {
-  onEvents: show,
-  onOpen: () => notice.settle(),
-  onWhole: (events) => recorder.keep(events),
-  onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
-};
+/** @returns {import("./components/aside.js").Ears} */
+function newEars() {
+  /** @type {import("./components/aside.js").Ears} */
+  const made = {
+    isOpen: true,
+    isLost: false,
+    onEvents: (events) => made.isOpen && show(events),
+    onOpen: () => made.isOpen && notice.settle(),
+    onWhole: (events) => recorder.keep(events),
+    onLost(seconds, code) {
+      made.isLost = true;
+      if (made.isOpen) notice.stay(lostWords(code, lastRefused, seconds));
+    },
+  };
+  return made;
+}
+
+/** @param {(listener: import("./stream/source.js").Listener) => import("./stream/source.js").Source} opener of the source that the page shows from now on */
+function listenTo(opener) {
+  ears = newEars();
+  source = opener(ears);
+}
+
+/** What lies aside is not gone back to. */
+function leaveAside() {
+  aside?.source.close();
+  aside = null;
+}
+
+/** From a recording to what was there before. */
+function leaveRecording() {
+  if (!aside || aside.ears.isLost) return location.reload();
+  deeds.select(null);
+  source.close();
+  ({ source, ears } = aside);
+  aside.takeUp(tiles, run, recorder);
+  aside = null;
+  offerOnly(tiles);
+  drawings.fill(tiles);
+  notice.say(`Back to the run, which stands at ${tiles.time.toFixed(2)} s.`);
+}
+
 // The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
 const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
 const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
 const open = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
-let source = open(listener);
+let ears = newEars();
+let source = open(ears);
 usb.offer(behind);
 byId("leave-recording").hidden = behind === "recording"; // nothing else is there
-byId("leave-recording").addEventListener("click", () => location.reload());
+byId("leave-recording").addEventListener("click", leaveRecording);
 
 setInterval(remember, 500);
 document.addEventListener("visibilitychange", () => {

@@ -63,7 +63,7 @@ export class Share {
       element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
     this.film = row("GIF", "The last seconds until now, as the page has shown them", () => this.gif());
     this.alone = row("Web page", "This run until now, as one file that replays in any browser", () => this.page());
-    this.compare = row("Compare", "Two runs side by side: another model, drawing, seed, or more lost bytes", () => deeds.compare());
+    this.compare = row("Compare", "Two runs side by side, both from 0 s: another model, drawing, seed, or more lost bytes", () => deeds.compare());
     this.compare.dataset.needs = "arrange";
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
