@@ -176,6 +176,7 @@ new Share(byId("top-deeds"), tiles, recorder, {
     return { now: addressOf(run.linkNow()), history: history && addressOf(history) };
   },
   lens: () => board.lens,
+  inChart: () => ({ from: agreement.view.begin, to: Math.min(agreement.view.begin + agreement.view.span, tiles.time) }),
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text, stays) => (stays ? notice.stay(text) : notice.say(text)),
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),

@@ -79,6 +79,23 @@ def test_any_order_of_jumps_gives_the_history_of_the_run(page: PageNode) -> None
             assert json.dumps(rest) == json.dumps(true[time]), f"{order} at {time}"
 
 
+def test_the_last_changes_of_mind_are_a_part_of_the_run(tmp_path: Path) -> None:
+    script = """
+import { History } from "./stream/history.js";
+function answer([times, until]) {
+  const history = new History();
+  for (const time of times) history.note({ time, port: "t", from: "1", to: "2" });
+  history.note({ time: 9, port: "t", from: "", to: "2" });
+  return history.lastBurst(until);
+}
+"""
+    with PageNode(tmp_path, script) as page:
+        assert page.ask([[], 9]) is None
+        part = page.ask([[0.05, 1, 1.4, 1.8, 5], 4])
+        assert part == {"from": pytest.approx(0.9), "to": pytest.approx(1.9)}
+        assert page.ask([[0.05, 1], 0.1]) == {"from": 0, "to": 0.1}
+
+
 def test_deeds_are_known_once_from_the_beginning(page: PageNode) -> None:
     for told in page.ask([RECORDED, [2, 9, 1, 8]]):
         assert told[-1] == [7]
