@@ -239,12 +239,14 @@ function drawOwn() {
   bring(board.root);
 }
 
-/** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
+/** Other tiles, with another model: on the same drawing and with its faults, where the model has it or it is an own one. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
   left.leave();
-  const given = new URLSearchParams(location.search);
-  const [look, step] = ["look", "lesson"].map((name) => given.get(name));
-  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }), ...(step && { lesson: step }) });
+  const query = new URLSearchParams(run.linkNow());
+  for (const name of ["until", "deed"]) query.delete(name);
+  query.set("model", model.id || model.name);
+  const step = new URLSearchParams(location.search).get("lesson");
+  if (step) query.set("lesson", step);
   history.replaceState(null, "", `?${query}${location.hash}`);
   run.start = null;
   run.wantedModel = "";
@@ -300,7 +302,7 @@ function show(events) {
 function begin() {
   offerOnly(tiles);
   drawings.fill(tiles);
-  if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute.`);
+  if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute, and the clock counts it.`);
   else if (tiles.source === "failed") tellFailed();
   else if (wasBuilding) notice.clear();
   wasBuilding = ["building", "failed"].includes(tiles.source);
@@ -374,7 +376,10 @@ usb.offer(behind);
 byId("leave-recording").hidden = behind === "recording"; // nothing else is there
 byId("leave-recording").addEventListener("click", leaveRecording);
 
-setInterval(remember, 500);
+setInterval(() => {
+  remember();
+  if (tiles.source === "building") verdict.update(tiles, performance.now());
+}, 500);
 document.addEventListener("visibilitychange", () => {
   if (tiles.can("rest")) source.send({ do: "rest", on: document.hidden });
 });
