@@ -4,11 +4,13 @@
 /** @import { Command, Model } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { known } from "../stream/drawing.js";
+import { faultWords, withLoss } from "../stream/faults.js";
 
 /** @typedef {{models: Model[], model: string, drawings: string[], drawing: string}} Here */
 /**
- * How far a run is: `since` when all tiles show `label`, or null; `query` is the address of what lies there now.
- * @typedef {{time: number, end: number | null, paused: boolean, jumps: number, stepS: number, since: number | null, label: string, changes: number, query: string}} Now
+ * How far a run is: `since` when all tiles show `label`, or null; `query` is the address of what lies there now,
+ * and `faults` are those of it in words, but for losses on all cables.
+ * @typedef {{time: number, end: number | null, paused: boolean, jumps: number, stepS: number, since: number | null, label: string, changes: number, query: string, faults: string[]}} Now
  */
 /** @typedef {{pace?: {speed: number, paused: boolean}, restart?: boolean, step?: boolean, seek?: number}} Wish */
 /** @typedef {{pace: (speed: number, paused: boolean) => void, restart: () => void, step: () => void}} TimeDeeds */
@@ -62,7 +64,8 @@ export function tellNow(tiles) {
   if (!isCompared) return;
   const { time, end, jumps, stepS, history } = tiles;
   const { since, label } = history.agreedAt(time);
+  const faults = withLoss(new URLSearchParams(location.search).getAll("fault"), 0).map((fault) => faultWords(fault, tiles.laid()));
   /** @type {Now} */
-  const now = { time, end, paused: tiles.pace.paused, jumps, stepS, since, label, changes: history.changesUntil(time), query: location.search };
+  const now = { time, end, paused: tiles.pace.paused, jumps, stepS, since, label, changes: history.changesUntil(time), query: location.search, faults };
   tell({ now });
 }
