@@ -37,7 +37,7 @@ class Run {
     const field = (text, control) => element("label", { title: control.title }, text, control);
     const title = name[0].toUpperCase() + name.slice(1);
     this.root = element("section", { class: "run", "aria-label": `The ${name} run` },
-      element("details", { open: !matchMedia("(max-width: 760px), (max-height: 560px)").matches },
+      element("details", { ontoggle: (/** @type {Event} */ event) => foldAll(event), open: !matchMedia("(max-width: 760px), (max-height: 560px)").matches },
         element("summary", {}, element("h2", {}, title), element("span", { class: "summary" }, "Settings")),
         element("form", { onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
           field("Model", this.model), field("Drawing", this.shape), field("Lost bytes (%)", this.loss), field("Seed", this.seed))),
@@ -109,7 +109,7 @@ class Run {
 
   /** @returns {import("./stream/comparison.js").Settings} */
   get settings() {
-    const others = withLoss(this.query.getAll("fault"), 0).join(" ");
+    const others = this.now?.faults.join("; ") ?? "";
     const drawing = this.query.get("draw") ?? this.query.get("shape") ?? "";
     const { lossPercent } = this;
     return [
@@ -120,6 +120,12 @@ class Run {
       ["other faults", others, others || "none"],
     ];
   }
+}
+
+/** Folds the settings of both alike, so that both boards have one size. @param {Event} event */
+function foldAll({ currentTarget }) {
+  const { open } = /** @type {HTMLDetailsElement} */ (currentTarget);
+  for (const run of runs) for (const one of run.root.getElementsByTagName("details")) one.open = open;
 }
 
 /** What an address says of a run. @param {string} text */

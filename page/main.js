@@ -1,6 +1,7 @@
 // The page: one source of events, one picture of the tiles, and the hands that reach in.
 
 /** @import { Command, Drawing, Place, StreamEvent } from "./stream/source.js" */
+import { Aside } from "./components/aside.js";
 import { Agreement } from "./components/agreement.js";
 import { Bar } from "./components/bar.js";
 import { Board } from "./components/board.js";
@@ -24,6 +25,7 @@ import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { readAddress } from "./stream/address.js";
+import { deedMoments, isDeed } from "./stream/deeds.js";
 import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
@@ -35,14 +37,15 @@ import { Tiles } from "./stream/tiles.js";
 
 // A little before a deed: more than the emulator's quantum of time, and less than a tile needs for anything.
 const MOMENT_S = 1e-4;
-/** @param {number} time */
-const undone = (time) => `Back to just before what hands did at ${time.toFixed(2)} s. Go on, and it happens again; do something else, and it never was.`;
 
 export const tiles = new Tiles();
 const recorder = new Recorder();
 const run = new Run(tiles, (command) => source.send(command));
 let lastRefused = "";
 let wasBuilding = false;
+let jumps = 0;
+/** The run that the page goes back to from a recording. @type {Aside | null} */
+let aside = null;
 
 /** @param {Command} command */
 function send(command) {
@@ -50,10 +53,23 @@ function send(command) {
     notice.say(refusal(tiles));
     return;
   }
+  if (isDeed(command)) notice.pass();
   left.note(command);
   run.note(command);
   hint.note(command.do);
   source.send(command);
+}
+
+/** What takes the last deed back, until it is sent; in a comparison it goes through the page around. @type {{seconds: number, goesOn: boolean} | null} */
+let takenBack = null;
+
+/** @param {number} seconds */
+function seek(seconds) {
+  const isUndo = takenBack?.seconds === seconds;
+  const goesOn = isUndo && takenBack?.goesOn;
+  takenBack = null;
+  send({ do: "seek", seconds, ...(isUndo && { forget: true }) });
+  if (goesOn) deeds.pace(tiles.pace.speed, false);
 }
 
 const deeds = {
@@ -112,16 +128,18 @@ const deeds = {
     if (!tiles.pace.paused) deeds.pace(tiles.pace.speed, true);
     send({ do: "step", seconds: tiles.stepS });
   },
-  /** To just before the last deed until now; it happens again, unless a hand does something else. */
+  /** Takes the last deed until now back: the tiles run on from there without it. */
   undo() {
-    const last = tiles.deeds.findLast(({ time }) => time <= tiles.time + MOMENT_S);
+    if (!tiles.can("arrange")) return notice.say(refusal(tiles));
+    const last = deedMoments(tiles.deeds).findLast(({ time }) => time <= tiles.time + MOMENT_S);
     if (tiles.end === null) {
       notice.say("Time does not go back here: undo it by hand.");
-    } else if (!last || last.time <= MOMENT_S) {
+    } else if (!last) {
       notice.say("There is nothing to take back.");
     } else {
-      timeline.go(last.time - MOMENT_S);
-      notice.say(undone(last.time));
+      takenBack = { seconds: last.time - MOMENT_S, goesOn: !tiles.pace.paused };
+      timeline.go(takenBack.seconds);
+      notice.say(`Taken back: ${last.words}.`);
     }
   },
   /** One update back. */
@@ -150,7 +168,7 @@ const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
 const agreement = new Agreement(tiles, (seconds) => timeline.go(seconds));
-const timeline = new Timeline(tiles, (seconds) => (isCompared ? ask({ seek: seconds }) : send({ do: "seek", seconds })));
+const timeline = new Timeline(tiles, (seconds) => (isCompared ? ask({ seek: seconds }) : seek(seconds)));
 const verdict = new Verdict();
 new Share(byId("top-deeds"), tiles, recorder, {
   links() {
@@ -158,15 +176,17 @@ new Share(byId("top-deeds"), tiles, recorder, {
     return { now: addressOf(run.linkNow()), history: history && addressOf(history) };
   },
   lens: () => board.lens,
+  inChart: () => ({ from: agreement.view.begin, to: Math.min(agreement.view.begin + agreement.view.span, tiles.time) }),
   words: () => `${verdict.text}, ${tiles.time.toFixed(2)} s`,
   say: (text, stays) => (stays ? notice.stay(text) : notice.say(text)),
   compare: () => location.assign(`compare.html?${new URLSearchParams({ left: location.search, right: location.search })}${location.hash}`),
   canAlone: () => behind !== "recording",
   replay: (events, isCut) => usb.release(() => {
-    source.close();
+    if (!aside && tiles.end !== null && run.isOwn && run.hasBegun) aside = new Aside(source, ears, tiles, run, recorder);
+    else source.close();
     const cut = isCut ? " Its last line was cut off; it ends before that." : "";
     notice.say(`A recording: go to any time of it.${cut}`);
-    source = openRecording(events, listener);
+    listenTo((listener) => openRecording(events, listener));
   }),
 });
 const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
@@ -187,12 +207,13 @@ const usb = new UsbPanel(byId("usb"), byId("top-deeds"), tiles, {
   choose(wanted) {
     deeds.select(null);
     source.close();
-    source = (wanted ?? open)(listener);
+    leaveAside();
+    listenTo(wanted ?? open);
   },
 });
 const help = new Help(byId("top-deeds"));
 listenToKeys(bar, deeds, lens, () => board.selected && inspector.program.step(1), () => help.show());
-obeyParent(deeds, send);
+obeyParent(deeds, seek, send);
 // Only the board and time, for a lesson or an article; where two are compared, the board and its agreement.
 if (new URLSearchParams(location.search).has("embed")) document.body.dataset.embed = isCompared ? "compare" : "";
 
@@ -218,17 +239,20 @@ function drawOwn() {
   bring(board.root);
 }
 
-/** Other tiles, with another model. @param {import("./stream/source.js").Model} model */
+/** Other tiles, with another model: on the same drawing and with its faults, where the model has it or it is an own one. @param {import("./stream/source.js").Model} model */
 function chooseModel(model) {
   left.leave();
-  const given = new URLSearchParams(location.search);
-  const [look, step] = ["look", "lesson"].map((name) => given.get(name));
-  const query = new URLSearchParams({ model: model.id || model.name, ...(look && { look }), ...(step && { lesson: step }) });
+  const query = new URLSearchParams(run.linkNow());
+  for (const name of ["until", "deed"]) query.delete(name);
+  query.set("model", model.id || model.name);
+  const step = new URLSearchParams(location.search).get("lesson");
+  if (step) query.set("lesson", step);
   history.replaceState(null, "", `?${query}${location.hash}`);
   run.start = null;
   run.wantedModel = "";
   source.close();
-  source = open(listener);
+  leaveAside();
+  listenTo(open);
 }
 
 /** The whole address with a query, from `?` on. @param {string} query */
@@ -249,6 +273,10 @@ function show(events) {
   tiles.take(events);
   recorder.take(events);
   if (isFirst) begin();
+  if (tiles.jumps !== jumps) {
+    jumps = tiles.jumps;
+    bar.showNoise(run.noiseNow());
+  }
   if (tiles.refused) {
     notice.say(tiles.refused);
     lastRefused = tiles.refused;
@@ -274,7 +302,7 @@ function show(events) {
 function begin() {
   offerOnly(tiles);
   drawings.fill(tiles);
-  if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute.`);
+  if (tiles.source === "building") notice.stay(`The firmware of ${tiles.model} is built first; this takes about a minute, and the clock counts it.`);
   else if (tiles.source === "failed") tellFailed();
   else if (wasBuilding) notice.clear();
   wasBuilding = ["building", "failed"].includes(tiles.source);
@@ -296,23 +324,62 @@ function tellFailed() {
   notice.stay(`The firmware of ${tiles.model} was not built: ${tiles.reason}. ${other}.`);
 }
 
-/** @type {import("./stream/source.js").Listener} */
-const listener = {
-  onEvents: show,
-  onOpen: () => notice.settle(),
-  onWhole: (events) => recorder.keep(events),
-  onLost: (seconds, code) => notice.stay(lostWords(code, lastRefused, seconds)),
-};
+/** @returns {import("./components/aside.js").Ears} */
+function newEars() {
+  /** @type {import("./components/aside.js").Ears} */
+  const made = {
+    isOpen: true,
+    isLost: false,
+    onEvents: (events) => made.isOpen && show(events),
+    onOpen: () => made.isOpen && notice.settle(),
+    onWhole: (events) => recorder.keep(events),
+    onLost(seconds, code) {
+      made.isLost = true;
+      if (made.isOpen) notice.stay(lostWords(code, lastRefused, seconds));
+    },
+  };
+  return made;
+}
+
+/** @param {(listener: import("./stream/source.js").Listener) => import("./stream/source.js").Source} opener of the source that the page shows from now on */
+function listenTo(opener) {
+  ears = newEars();
+  source = opener(ears);
+}
+
+/** What lies aside is not gone back to. */
+function leaveAside() {
+  aside?.source.close();
+  aside = null;
+}
+
+/** From a recording to what was there before. */
+function leaveRecording() {
+  if (!aside || aside.ears.isLost) return location.reload();
+  deeds.select(null);
+  source.close();
+  ({ source, ears } = aside);
+  aside.takeUp(tiles, run, recorder);
+  aside = null;
+  offerOnly(tiles);
+  drawings.fill(tiles);
+  notice.say(`Back to the run, which stands at ${tiles.time.toFixed(2)} s.`);
+}
+
 // The document says what stands behind it: `tilenca page`, the emulator beside it in the bundle, or a recording.
 const behind = document.querySelector("meta[name=tilenca-source]")?.getAttribute("content") ?? "server";
 const openers = { server: openServer, emulator: openEmulator, recording: openOwnRecording };
 const open = openers[/** @type {keyof typeof openers} */ (behind)] ?? openServer;
-let source = open(listener);
+let ears = newEars();
+let source = open(ears);
 usb.offer(behind);
 byId("leave-recording").hidden = behind === "recording"; // nothing else is there
-byId("leave-recording").addEventListener("click", () => location.reload());
+byId("leave-recording").addEventListener("click", leaveRecording);
 
-setInterval(remember, 500);
+setInterval(() => {
+  remember();
+  if (tiles.source === "building") verdict.update(tiles, performance.now());
+}, 500);
 document.addEventListener("visibilitychange", () => {
   if (tiles.can("rest")) source.send({ do: "rest", on: document.hidden });
 });

@@ -1,7 +1,8 @@
-// Agreement over time: what share of the tiles showed what, and a mark for every change of mind.
+// Agreement over time: what share of the tiles showed what, and a mark for every change of mind and for every deed.
 
 /** @import { Look } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
+import { deedMoments } from "../stream/deeds.js";
 import { seenColour } from "../stream/led.js";
 import { byId, element, setText } from "./dom.js";
 
@@ -17,6 +18,7 @@ const AXIS = 17;
 const STRIP = 12; // pixels for the whole run, below a part of it
 const LEAST_FRAME = 8; // pixels around the part, of a very long run
 const DRAW_MS = 90;
+const DEED = 5; // pixels of half the mark of a deed; a pointer is at it within as many
 
 /** The distance of lines at a time axis: a round one. @param {number} span @param {number} most */
 export function roundStep(span, most) {
@@ -76,6 +78,7 @@ export class Agreement {
     this.canvas.addEventListener("click", (event) => {
       if (tiles.end !== null) go(Math.min(this.timeAt(event.offsetX, event.offsetY), tiles.end));
     });
+    this.canvas.addEventListener("pointermove", ({ offsetX, offsetY }) => (this.canvas.title = this.deedAt(offsetX, offsetY)));
     this.lastRate = 1;
     /** The timer of what was too soon to be drawn. */
     this.later = 0;
@@ -91,6 +94,7 @@ export class Agreement {
 
   /** @param {number} now */
   update(now) {
+    this.tell();
     if (now - this.drawn < DRAW_MS) {
       this.later ||= setTimeout(() => this.update(performance.now()), DRAW_MS); // nothing may follow
       return;
@@ -98,13 +102,19 @@ export class Agreement {
     clearTimeout(this.later);
     this.later = 0;
     this.drawn = now;
+    this.draw();
+  }
+
+  /** Says it of the same moment as the verdict and the clock. */
+  tell() {
     const { tiles } = this;
     const { counts, total } = tiles.count();
     const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
     const share = total ? Math.round((100 * most) / total) : 0;
     const changes = tiles.history.changesUntil(tiles.time);
-    setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind`);
-    this.draw();
+    const deeds = deedMoments(tiles.deeds).filter(({ time }) => time <= tiles.time).length;
+    const done = deeds ? `, ${deeds} ${deeds === 1 ? "deed" : "deeds"}` : "";
+    setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind${done}`);
   }
 
   /** The time at a point of the chart, in pixels. @param {number} x @param {number} y */
@@ -112,6 +122,14 @@ export class Agreement {
     const isInStrip = this.whole !== null && y >= this.canvas.clientHeight - STRIP;
     const { begin, span } = isInStrip ? { begin: 0, span: this.whole ?? 1 } : this.view;
     return Math.max(0, begin + ((x - EDGE) / (this.canvas.clientWidth - 2 * EDGE)) * span);
+  }
+
+  /** What hands did at a point of the chart; "" for nothing. @param {number} x @param {number} y */
+  deedAt(x, y) {
+    const isInStrip = this.whole !== null && y >= this.canvas.clientHeight - STRIP;
+    const at = isInStrip ? this.scale(0, this.whole ?? 1) : this.scale(this.view.begin, this.view.span);
+    const near = deedMoments(this.tiles.deeds).filter(({ time }) => Math.abs(at(time) - x) <= DEED);
+    return near.map(({ time, words }) => `${time.toFixed(2)} s: ${words}`).join("\n");
   }
 
   /** @param {string} label @param {string} ground "#rrggbb" */
@@ -151,6 +169,7 @@ export class Agreement {
     pen.fill();
     this.drawBands(x, 0, top, ink);
     this.drawMarks(x, top, ink);
+    this.drawDeeds(x, 0);
     this.drawNow(x, 0, bottom - AXIS);
     this.drawAxis(x, bottom, ink);
     if (this.whole !== null) this.drawStrip(this.whole, bottom + 2, ink);
@@ -230,6 +249,7 @@ export class Agreement {
     pen.fillRect(EDGE, top, left - EDGE, height - top);
     pen.fillRect(right, top, width - EDGE - right, height - top);
     pen.globalAlpha = 1;
+    this.drawDeeds(x, top);
     this.drawNow(x, top, height);
     pen.strokeStyle = "#fff";
     pen.lineWidth = 2;
@@ -262,6 +282,26 @@ export class Agreement {
         pen.fillStyle = ink.band;
         pen.fillRect(from, top, to - from, y - top);
       }
+    }
+  }
+
+  /** Where hands did something. @param {(time: number) => number} x @param {number} top */
+  drawDeeds(x, top) {
+    const { pen } = this;
+    const right = this.canvas.clientWidth - EDGE;
+    pen.fillStyle = "#fff";
+    pen.strokeStyle = "#000";
+    pen.lineWidth = 1;
+    for (const { time } of deedMoments(this.tiles.deeds)) {
+      const at = x(time);
+      if (at < EDGE || at > right) continue;
+      pen.beginPath();
+      pen.moveTo(at - DEED, top + 0.5);
+      pen.lineTo(at + DEED, top + 0.5);
+      pen.lineTo(at, top + 1.6 * DEED);
+      pen.closePath();
+      pen.fill();
+      pen.stroke();
     }
   }
 

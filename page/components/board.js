@@ -39,6 +39,7 @@ export class Board {
     /** Ports of the tiles in the hand. @type {string[]} */
     this.lifted = [];
     this.isAwake = false;
+    this.jumps = 0;
     /** Whether the view was chosen for one who draws. */
     this.isDrawing = false;
     this.hands = new Hands(root, tiles, this.view, {
@@ -55,7 +56,10 @@ export class Board {
     root.addEventListener("keydown", (event) => this.key(event));
     root.addEventListener("click", (event) => this.click(event));
     root.addEventListener("focusin", (event) => this.focused(event));
-    new ResizeObserver(() => this.arrange()).observe(root);
+    new ResizeObserver(() => {
+      this.arrange();
+      this.wake(); // what it has cleared is drawn again, also while time stands
+    }).observe(root);
   }
 
   /** Shows with the next frame what a hand has changed: a source tells nothing while time stands. */
@@ -76,9 +80,11 @@ export class Board {
     }
     for (const port of this.tiles.dirty) {
       const tile = this.tiles.byPort.get(port);
-      if (tile) this.views.get(port)?.update(tile, port === this.selected, this.lens);
+      if (tile) this.views.get(port)?.update(tile, this.tiles.shown(tile), port === this.selected, this.lens);
     }
     this.tiles.dirty.clear();
+    if (this.jumps !== this.tiles.jumps) this.cables.flights = []; // they were of another time
+    this.jumps = this.tiles.jumps;
     this.cables.launch(this.tiles.pulses, this.tiles, this.view, now);
     this.tiles.pulses = [];
     this.cables.draw(this.tiles, this.view, now);
@@ -104,7 +110,7 @@ export class Board {
   look(lens) {
     this.lens = lens;
     this.root.classList.toggle("looks", lens !== null);
-    for (const tile of this.tiles.laid()) this.views.get(tile.port)?.update(tile, tile.port === this.selected, lens);
+    for (const tile of this.tiles.laid()) this.views.get(tile.port)?.update(tile, this.tiles.shown(tile), tile.port === this.selected, lens);
   }
 
   /** Puts everything in its place. */
@@ -132,7 +138,7 @@ export class Board {
         this.root.append(view.button);
       }
       move(view.button, this.view.corner(...tile.place));
-      view.update(tile, tile.port === this.selected, this.lens);
+      view.update(tile, this.tiles.shown(tile), tile.port === this.selected, this.lens);
     }
     for (const port of gone) {
       this.views.get(port)?.button.remove();

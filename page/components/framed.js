@@ -4,11 +4,13 @@
 /** @import { Command, Model } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { known } from "../stream/drawing.js";
+import { faultWords, withLoss } from "../stream/faults.js";
 
 /** @typedef {{models: Model[], model: string, drawings: string[], drawing: string}} Here */
 /**
- * How far a run is: `since` when all tiles show `label`, or null; `query` is the address of what lies there now.
- * @typedef {{time: number, end: number | null, paused: boolean, jumps: number, stepS: number, since: number | null, label: string, changes: number, query: string}} Now
+ * How far a run is: `since` when all tiles show `label`, or null; `query` is the address of what lies there now,
+ * and `faults` are those of it in words, but for losses on all cables.
+ * @typedef {{time: number, end: number | null, paused: boolean, jumps: number, stepS: number, since: number | null, label: string, changes: number, query: string, faults: string[]}} Now
  */
 /** @typedef {{pace?: {speed: number, paused: boolean}, restart?: boolean, step?: boolean, seek?: number}} Wish */
 /** @typedef {{pace: (speed: number, paused: boolean) => void, restart: () => void, step: () => void}} TimeDeeds */
@@ -30,8 +32,8 @@ function tell(message) {
 /** Asks for time of both runs. @param {Wish} wish */
 export const ask = (wish) => tell({ wish });
 
-/** @param {TimeDeeds} deeds @param {(command: Command) => void} send */
-export function obeyParent(deeds, send) {
+/** @param {TimeDeeds} deeds @param {(seconds: number) => void} go to a time @param {(command: Command) => void} send */
+export function obeyParent(deeds, go, send) {
   if (!isCompared) return;
   const own = { ...deeds };
   Object.assign(deeds, /** @type {TimeDeeds} */ ({
@@ -45,7 +47,7 @@ export function obeyParent(deeds, send) {
     if (restart) own.restart();
     if (pace) own.pace(Number(pace.speed), Boolean(pace.paused));
     if (step) send({ do: "step", seconds: Number(step) });
-    if (seek !== undefined) send({ do: "seek", seconds: Number(seek) });
+    if (seek !== undefined) go(Number(seek));
   });
 }
 
@@ -62,7 +64,8 @@ export function tellNow(tiles) {
   if (!isCompared) return;
   const { time, end, jumps, stepS, history } = tiles;
   const { since, label } = history.agreedAt(time);
+  const faults = withLoss(new URLSearchParams(location.search).getAll("fault"), 0).map((fault) => faultWords(fault, tiles.laid()));
   /** @type {Now} */
-  const now = { time, end, paused: tiles.pace.paused, jumps, stepS, since, label, changes: history.changesUntil(time), query: location.search };
+  const now = { time, end, paused: tiles.pace.paused, jumps, stepS, since, label, changes: history.changesUntil(time), query: location.search, faults };
   tell({ now });
 }

@@ -25,7 +25,7 @@ const KEYS = [
   ["H, G, D, K", "Hand, Group, Draw, Knife", "put"],
   ["P", "pause or go on; so does Space, unless the keyboard is on a button, which it presses", "pace"],
   [". and ,", "one update forward, one back", "seek step"],
-  ["Ctrl Z", "to just before the last deed", "put"],
+  ["Ctrl Z", "take the last deed back", "put"],
   ["I", "one instruction of the tile that is looked into", "instruct"],
   ["L, Shift L", "the next colours, those before"],
   ["R", "start over", "open"],

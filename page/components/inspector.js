@@ -116,8 +116,9 @@ export class Inspector {
       this.shape = shape;
       this.build(tile);
     }
-    const look = tile.label === "" ? "nothing" : tile.label === "-" ? "a dash" : tile.label;
-    const sure = tile.margin === null ? "" : `, ${sureness(tile.margin)}`;
+    const label = this.tiles.shown(tile);
+    const look = label === "" ? "nothing" : label === "-" ? "a dash" : label;
+    const sure = tile.margin === null || label !== tile.label ? "" : `, ${sureness(tile.margin)}`;
     setText(this.guess, tile.powered ? `It shows ${look}${sure}` : awayWords(tile));
     setText(this.power, tile.powered ? "Power off" : "Power on");
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");

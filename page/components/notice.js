@@ -35,6 +35,11 @@ export class Notice {
     this.root.hidden = false;
   }
 
+  /** A hand does something else: what was said for a while, without a way back, has been read. */
+  pass() {
+    if (this.timer && !this.root.firstElementChild) this.clear();
+  }
+
   /** What was said until further notice is over. */
   settle() {
     if (this.timer === 0) this.clear();

@@ -21,6 +21,7 @@ const HOLE = "<!-- the recording -->";
  *   links: () => {now: string, history: string | null},
  *   words: () => string,
  *   lens: () => import("../stream/lens.js").Lens | null,
+ *   inChart: () => {from: number, to: number},
  *   say: (text: string, stays?: boolean) => void,
  *   replay: (events: StreamEvent[], isCut: boolean) => void,
  *   compare: () => void,
@@ -61,9 +62,12 @@ export class Share {
     /** @param {string} text @param {string} help @param {() => void} act */
     const row = (text, help, act) => element("div", { class: "row" },
       element("button", { type: "button", onclick: act }, text), element("p", { class: "summary" }, help));
-    this.film = row("GIF", "The last seconds until now, as the page has shown them", () => this.gif());
+    this.part = element("select", { "aria-label": "What the GIF shows", id: "share-part" },
+      ...[["now", "The last seconds, as the page has shown them"], ["change", "The last changes of mind"], ["chart", "What the chart shows, until now"]]
+        .map(([value, text]) => element("option", { value }, text)));
+    this.film = element("div", { class: "row" }, element("button", { type: "button", onclick: () => this.gif() }, "GIF"), this.part);
     this.alone = row("Web page", "This run until now, as one file that replays in any browser", () => this.page());
-    this.compare = row("Compare", "Two runs side by side: another model, drawing, seed, or more lost bytes", () => deeds.compare());
+    this.compare = row("Compare", "Two runs side by side, both from 0 s: another model, drawing, seed, or more lost bytes", () => deeds.compare());
     this.compare.dataset.needs = "arrange";
     this.dialog.append(
       element("header", {}, element("h2", { id: "share-title" }, "Share"),
@@ -132,22 +136,32 @@ export class Share {
   }
 
   picture() {
-    const painting = { words: this.deeds.words(), lens: this.deeds.lens() };
-    return this.attempt(async () => download(await boardPicture(this.tiles, painting), this.nameOf("png")));
+    const [painting, name] = [{ words: this.deeds.words(), lens: this.deeds.lens() }, this.nameOf("png")]; // of one moment
+    return this.attempt(async () => download(await boardPicture(this.tiles, painting), name));
   }
 
-  /** The last seconds, at the speed of the page. */
+  /** What of the run the GIF shows, and how long it lasts; null: there is no such part. */
+  span() {
+    const { time: now, pace, history } = this.tiles;
+    if (this.part.value === "now") {
+      const from = Math.max(0, now - FILM_S * (pace.speed || 1));
+      return { from, to: now, seconds: (now - from) / (pace.speed || 1) };
+    }
+    const part = this.part.value === "chart" ? this.deeds.inChart() : history.lastBurst(now);
+    return part && { ...part, seconds: FILM_S };
+  }
+
   gif() {
-    const to = this.tiles.time;
     if (this.recorder.isFull) return this.deeds.say("The recording is too long; it has the beginning only, and no GIF of the last seconds. Restart the run for one.");
-    const speed = this.tiles.pace.speed || 1;
-    const from = Math.max(0, to - FILM_S * speed);
+    const part = this.span();
+    if (!part) return this.deeds.say("No tile has changed its mind yet; choose another part for the GIF.");
+    const { from, to } = part;
     const button = /** @type {HTMLButtonElement} */ (this.film.firstElementChild);
     button.disabled = true;
     const span = `${from.toFixed(2)} to ${to.toFixed(2)} s`;
     this.deeds.say(`The GIF of ${span} is being made.`, true);
     return this.attempt(async () => {
-      const film = await boardFilm(this.recorder.recording(), { from, to, seconds: (to - from) / speed }, this.deeds.lens(),
+      const film = await boardFilm(this.recorder.recording(), part, this.deeds.lens(),
         (left) => this.deeds.say(`The GIF of ${span} is being made: about ${Math.ceil(left)} s more.`, true));
       const name = `tilenca-${this.tiles.seed}-${to.toFixed(2)}s.gif`;
       download(film, name);

@@ -37,8 +37,8 @@ export class TileView {
     this.shadeText = "";
   }
 
-  /** @param {Tile} tile @param {boolean} isSelected @param {Lens | null} lens what its colour tells; null: its LED */
-  update(tile, isSelected, lens) {
+  /** @param {Tile} tile @param {string} label that it shows @param {boolean} isSelected @param {Lens | null} lens what its colour tells; null: its LED */
+  update(tile, label, isSelected, lens) {
     const colour = cssColour(tile.rgb);
     if (this.segments !== tile.segments) {
       this.segments = tile.segments;
@@ -58,7 +58,7 @@ export class TileView {
     this.button.classList.toggle("turned", tile.turned);
     this.button.dataset.state = mark;
     setText(this.mark, mark);
-    const words = describe(tile, lens && (seen === null ? `no ${lens.unit}` : `${lens.unit} ${seen}`));
+    const words = describe(tile, label, lens && (seen === null ? `no ${lens.unit}` : `${lens.unit} ${seen}`));
     if (words !== this.said) {
       this.said = words;
       this.button.setAttribute("aria-label", words);
@@ -84,12 +84,12 @@ function spoiltWords({ frozen, turned, skew }) {
   return [frozen ? "frozen" : "", turned ? "turned by 90 degrees" : "", clock].filter(Boolean).join(", ");
 }
 
-/** What a screen reader says of a tile. @param {Tile} tile @param {string | null} seen what its colour tells */
-function describe(tile, seen) {
+/** What a screen reader says of a tile. @param {Tile} tile @param {string} label that it shows @param {string | null} seen what its colour tells */
+function describe(tile, label, seen) {
   const links = SIDE_WORDS.filter((_, side) => tile.leds[side] === SIDES[side]);
   const place = tile.place ? `, row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : "";
   if (!tile.powered) return `Tile ${tile.number}${place}, ${tile.trouble ? `${tile.trouble}, ${tile.reason}` : "no power"}`;
-  const shows = tile.label === "" ? "shows nothing yet" : tile.label === "-" ? "shows a dash" : `shows ${tile.label}`;
+  const shows = label === "" ? "shows nothing yet" : label === "-" ? "shows a dash" : `shows ${label}`;
   const linked = links.length ? `linked ${links.join(", ")}` : "no links";
   return [`Tile ${tile.number}${place}`, shows, seen, linked, spoiltWords(tile), tile.trouble].filter(Boolean).join(", ");
 }

@@ -1,6 +1,7 @@
 // The whole run on one line: a slider to go back to any time, of the same scale as the chart above it.
 
 /** @import { Tiles } from "../stream/tiles.js" */
+import { deedMoments } from "../stream/deeds.js";
 import { spanOf } from "./agreement.js";
 import { byId, element, setText } from "./dom.js";
 
@@ -11,7 +12,7 @@ const PATIENCE_MS = 3000;
 const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 export class Timeline {
-  /** @param {Pick<Tiles, "time" | "end" | "jumps" | "stepS">} tiles @param {(seconds: number) => void} seek */
+  /** @param {Pick<Tiles, "time" | "end" | "jumps" | "stepS"> & {deeds?: Tiles["deeds"]}} tiles @param {(seconds: number) => void} seek */
   constructor(tiles, seek) {
     this.tiles = tiles;
     this.seek = seek;
@@ -25,7 +26,8 @@ export class Timeline {
       onkeydown: (/** @type {KeyboardEvent} */ event) => this.key(event),
     });
     this.words = element("output", { for: "moment", class: "speed-words" });
-    this.root.append(this.slider, element("span", { class: "caption", "aria-hidden": "true" }, "Go back"), this.words);
+    this.deed = element("span", { class: "summary", role: "status" });
+    this.root.append(this.slider, element("span", { class: "caption", "aria-hidden": "true" }, "Go back"), this.deed, this.words);
   }
 
   /** An arrow key is an update, which is more than a step of the slider. @param {KeyboardEvent} event */
@@ -72,5 +74,7 @@ export class Timeline {
     const words = `${tiles.time.toFixed(2)} of ${tiles.end.toFixed(2)} s`;
     setText(this.words, words);
     this.slider.setAttribute("aria-valuetext", words);
+    const last = deedMoments(tiles.deeds ?? []).findLast(({ time }) => time <= tiles.time);
+    setText(this.deed, last ? `${last.time.toFixed(2)} s: ${last.words}` : "");
   }
 }

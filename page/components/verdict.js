@@ -52,6 +52,7 @@ export class Verdict {
     this.text = "";
     this.since = 0;
     this.version = -1;
+    this.buildsSince = 0;
   }
 
   /** @param {Tiles} tiles @param {number} now */
@@ -69,6 +70,12 @@ export class Verdict {
       this.said = this.text;
       setText(byId("announce"), this.text);
     }
+    if (tiles.source === "building") {
+      this.buildsSince ||= now;
+      setText(this.clock, `${Math.floor((now - this.buildsSince) / 1000)} s`);
+      return;
+    }
+    this.buildsSince = 0;
     setText(this.clock, `${tiles.time.toFixed(tiles.pace.speed && tiles.pace.speed < 0.02 ? 4 : 2)} s`);
   }
 }

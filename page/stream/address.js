@@ -31,8 +31,8 @@ function numberIn(text, low, high, otherwise) {
 export function readAddress(query, drawings) {
   const given = new URLSearchParams(query);
   const wanted = given.get("shape");
-  const shape = drawings.find((one) => one.name === wanted) ??
-    drawings.find((one) => one.label === FIRST_DRAWING) ?? drawings[0];
+  const asked = drawings.find((one) => one.name === wanted);
+  const shape = asked ?? drawings.find((one) => one.label === FIRST_DRAWING) ?? drawings[0];
   const drawn = cellsOf((given.get("draw") ?? "").split("-"));
   const isDrawn = drawn.length > 0 || given.get("draw") === EMPTY;
   const until = numberIn(given.get("until"), 0, 86400, NaN);
@@ -40,7 +40,8 @@ export function readAddress(query, drawings) {
     cells: isDrawn ? drawn : cellsOf(shape?.rows ?? ["#"]),
     seed: Math.floor(numberIn(given.get("seed"), 0, Number.MAX_SAFE_INTEGER, 0)),
     speed: Number(given.get("speed") || NaN) === 0 ? 0 : numberIn(given.get("speed"), LEAST_SPEED, 1024, DEFAULT_SPEED),
-    faults: given.getAll("fault").slice(0, 32),
+    // Those at a place of a drawing that is not here are not of another one.
+    faults: given.getAll("fault").filter((fault) => !fault.includes("@") || isDrawn || !wanted || asked).slice(0, 32),
     spread: numberIn(given.get("spread"), 0, 3600, DEFAULT_SPREAD_S),
     until: Number.isNaN(until) ? null : until,
     model: given.get("model") ?? "",

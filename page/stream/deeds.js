@@ -60,6 +60,52 @@ const KINDS = {
   },
 };
 
+/** @param {unknown} port */
+const tileWords = (port) => `tile ${numberOf(port)}`;
+/** @type {Record<string, string>} */
+const SIDE_WORDS = { N: "north", E: "east", S: "south", W: "west" };
+
+/** What each of them is in words, as what has happened. @type {Record<string, (deed: any) => string>} */
+const WORDS = {
+  put: () => "a tile put in",
+  pull: ({ port }) => `${tileWords(port)} pulled out`,
+  move: ({ port }) => `${tileWords(port)} moved`,
+  shift: ({ ports }) => (ports.length === 1 ? `${tileWords(ports[0])} moved` : `${ports.length} tiles moved together`),
+  arrange: ({ cells }) => `another drawing, of ${cells.length} ${cells.length === 1 ? "tile" : "tiles"}`,
+  cut: ({ port, side, on }) => `cable ${on ? "cut" : "mended"} at ${tileWords(port)}, ${SIDE_WORDS[side]}`,
+  power: ({ port, on }) => `${tileWords(port)} switched ${on ? "on" : "off"}`,
+  freeze: ({ port, on }) => `${tileWords(port)} ${on ? "frozen" : "thawed"}`,
+  turn: ({ port, on }) => `${tileWords(port)} ${on ? "turned" : "turned back"}`,
+  skew: ({ port, ppm }) => `the clock of ${tileWords(port)} ${ppm ? `${Math.abs(ppm)} ppm too ${ppm > 0 ? "fast" : "slow"}` : "right again"}`,
+  reset: ({ port }) => `${tileWords(port)} reset`,
+  noise: ({ loss }) => (loss ? `${Number((100 * loss).toFixed(1))} % of the bytes lost` : "no byte lost any more"),
+  blink: ({ port }) => `${tileWords(port)} blinks`,
+  restart: ({ port }) => `the button of ${tileWords(port)} pressed`,
+  set: ({ name, value, port }) => `${name} ${value} set at ${port === null ? "all tiles" : tileWords(port)}`,
+};
+
+/** A deed in a few words. @param {Command} deed */
+export const deedWords = (deed) => WORDS[deed.do]?.(deed) ?? deed.do;
+
+const SAME_S = 1e-4; // what was done while time stood is one
+const MOST_WORDS = 2;
+
+/** The deeds of each moment as one, in words; those of the beginning are none. @param {Deed[]} deeds */
+export function deedMoments(deeds) {
+  /** @type {{time: number, all: string[]}[]} */
+  const moments = [];
+  for (const { time, deed } of deeds) {
+    const last = moments.at(-1);
+    if (time <= SAME_S) continue;
+    if (last && time - last.time < SAME_S) last.all.push(deedWords(deed));
+    else moments.push({ time, all: [deedWords(deed)] });
+  }
+  return moments.map(({ time, all }) => {
+    const more = all.length - MOST_WORDS;
+    return { time, words: [...all.slice(0, MOST_WORDS), ...(more > 0 ? [`${more} more`] : [])].join(", ") };
+  });
+}
+
 /** Whether a command changes what the tiles do from then on. @param {Command} command */
 export const isDeed = (command) => Object.hasOwn(KINDS, command.do);
 

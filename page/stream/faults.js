@@ -28,6 +28,33 @@ export const lossOf = (faults) => Number(faults.map((fault) => EVERYWHERE.exec(f
 export const withLoss = (faults, share) =>
   [...(share > 0 ? [`loss=${Number(share.toFixed(3))}`] : []), ...faults.filter((fault) => !EVERYWHERE.test(fault))];
 
+/** @type {Record<string, string>} */
+const WORDS = {
+  cut: "a cut cable", off: "no power", turn: "turned", skew: "a clock too fast (ppm)", drift: "a drifting clock", loss: "lost bytes",
+  flip: "flipped bits", delay: "a delay (ms)", reset: "a reset", remove: "taken out", adc: "noise at its pins", supply: "a supply (V)",
+};
+/** @type {Record<string, string>} */
+const SIDE_WORDS = { N: "north", E: "east", S: "south", W: "west" };
+
+/**
+ * A fault in words, by the place on the board and not by a number, which changes with the tiles before it.
+ * @param {string} fault
+ * @param {LaidTile[]} laid the tiles that it numbers
+ */
+export function faultWords(fault, laid) {
+  const [, what, where, times] = PLACED.exec(fault) ?? [fault, fault, "", ""];
+  const [, first, side, second] = WHERE.exec(where) ?? [];
+  /** @param {string} number */
+  const place = (number) => {
+    const tile = laid[Number(number) - 1];
+    return tile ? `row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : `tile ${number}`;
+  };
+  const [kind, value] = what.split("=");
+  const at = first ? ` at ${place(first)}` : " everywhere";
+  const towards = side ? `, ${SIDE_WORDS[side]}` : second ? ` to ${place(second)}` : "";
+  return `${WORDS[kind] ?? kind}${value ? ` ${value}` : ""}${at}${towards}${times ? `, ${times.slice(1)} s` : ""}`;
+}
+
 /** The kinds of faults that are from now on as the board shows them. @param {Command} command */
 export const kindsChangedBy = (command) => CHANGES.get(command.do) ?? [];
 

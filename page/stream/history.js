@@ -10,6 +10,8 @@
  */
 
 const MOST_KEPT = 4000;
+const REST_S = 0.5; // without a change of mind: what was before is another matter
+const AROUND_S = 0.1; // before and after changes that belong together
 
 /** @param {Change} change */
 const isOfMind = ({ from, to }) => from !== "" && to !== "";
@@ -33,6 +35,16 @@ export class History {
     let count = this.changeCount;
     for (let i = this.changes.length - 1; i >= 0 && this.changes[i].time > time; i--) if (isOfMind(this.changes[i])) count--;
     return count;
+  }
+
+  /** From when to when tiles changed their minds last, with a little around it; null: they did not. @param {number} time until then */
+  lastBurst(time) {
+    const times = this.changes.filter((change) => change.time <= time && isOfMind(change)).map((change) => change.time);
+    let first = times.length - 1;
+    if (first < 0) return null;
+    const to = times[first];
+    while (first > 0 && times[first] - times[first - 1] <= REST_S) first--;
+    return { from: Math.max(0, times[first] - AROUND_S), to: Math.min(time, to + AROUND_S) };
   }
 
   /** What all tiles show at a time, and since when; null where they do not agree. @param {number} time */

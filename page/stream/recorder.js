@@ -68,7 +68,7 @@ export class Recorder {
   recording() {
     const [run, ...rest] = this.events;
     if (!this.stream || !run) return [];
-    const sorted = [...rest].sort((one, other) => one.time - other.time);
+    const sorted = rest.filter(({ time }) => time <= this.known).sort((one, other) => one.time - other.time);
     const end = { time: this.known, pace: { speed: 1, paused: true, share: 1, end: this.known } };
     return [this.stream, run, ...sorted, end];
   }

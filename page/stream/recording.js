@@ -51,9 +51,11 @@ export function openOwnRecording(listener) {
  */
 export function openRecording(recorded, listener) {
   const [first, run, ...rest] = recorded;
-  const events = rest.filter((event) => !event.pace && !event.jump);
+  const events = rest.filter((event) => !event.pace && !event.jump && !event.deed);
+  const deeds = rest.filter((event) => event.deed); // told at the beginning, as those of a shared run are
   const end = Math.max(0, ...rest.slice(-1).map((event) => event.time), events.at(-1)?.time ?? 0);
   let [time, place, speed, paused, isResting] = [0, 0, 1, true, false];
+  let reached = 0; // the page has been told all until then
   /** @type {StreamEvent[]} */
   let waiting = [{ ...first, source: "recording", of: first.of ?? first.source, takes: TAKES }];
   listener.onWhole?.(recorded);
@@ -68,12 +70,22 @@ export function openRecording(recorded, listener) {
   function pass(to) {
     time = Math.min(to, end);
     while (place < events.length && events[place].time <= time) tell(events[place++]);
+    reached = Math.max(reached, time);
     if (time >= end) paused = true;
     tellPace();
   }
 
-  /** @param {number} wanted */
+  /** Goes to a time; what the page does not know yet until then is told on the way. @param {number} wanted */
   function seek(wanted) {
+    if (wanted > reached) {
+      if (time < reached) jump(reached);
+      pass(wanted);
+    }
+    jump(wanted);
+  }
+
+  /** Tells all that there is at a time. @param {number} wanted */
+  function jump(wanted) {
     const from = time;
     /** @type {Map<string, StreamEvent>} */
     const last = new Map();
@@ -105,8 +117,9 @@ export function openRecording(recorded, listener) {
   /** @type {Record<string, (command: any) => void>} */
   const obeyed = {
     open: (command) => {
-      [time, place, speed, paused] = [0, 0, command.speed, false];
+      [time, place, reached, speed, paused] = [0, 0, 0, command.speed, false];
       tell(run);
+      deeds.forEach(tell);
       pass(0);
     },
     pace: (command) => {

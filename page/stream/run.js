@@ -74,6 +74,13 @@ export class Run {
     if (command.do === "pace" && this.start) this.start.speed = Number(command.speed);
   }
 
+  /** Time has gone to another moment: the share of bytes that was lost then. */
+  noiseNow() {
+    const { tiles } = this;
+    const last = tiles.deeds.findLast(({ time, deed }) => time <= tiles.time && deed.do === "noise");
+    return (this.noise = last ? Number(last.deed.loss) : lossOf(this.given));
+  }
+
   /** Begins what the address asks for. */
   begin() {
     this.start = this.start ?? readAddress(location.search, this.tiles.drawings);

@@ -13,7 +13,7 @@
  *   stream?: number, source?: string, of?: string, takes?: string[], looks?: Look[], drawings?: Drawing[], period_ms?: number | null,
  *   most_tiles?: number, most_place?: number, models?: Model[], model?: string,
  *   run?: {seed: number, shape: string, tiles: number, began?: number},
- *   jump?: {from: number},
+ *   jump?: {from: number, forget?: boolean},
  *   deed?: Command,
  *   pace?: {speed: number, paused: boolean, share: number, end?: number},
  *   place?: Place | null, tile?: number,

@@ -70,7 +70,7 @@ export class Tiles {
     for (const event of events) {
       const before = this.version;
       this.takeOne(event);
-      if (this.version !== before) this.history.sample({ time: event.time, ...this.count() });
+      if (this.version !== before) this.history.sample({ time: event.time, ...this.count((tile) => tile.label) });
     }
   }
 
@@ -96,6 +96,7 @@ export class Tiles {
       this.deeds = [...this.deeds.filter(({ time }) => time <= event.time), { time: event.time, deed: event.deed }];
     } else if (event.jump) {
       this.jump(event.time);
+      if (event.jump.forget) this.deeds = this.deeds.filter(({ time }) => time <= event.time);
     } else if (event.pace) {
       this.pace = event.pace;
       this.time = event.time;
@@ -177,6 +178,7 @@ export class Tiles {
       tile.chip = event.chip;
     } else if (event.display) {
       const { segments, rgb, leds } = event.display;
+      if (segments !== tile.segments) this.version++;
       Object.assign(tile, { segments, rgb, leds });
     } else if (event.health) {
       if (tile.trouble !== event.health.trouble) this.version++;
@@ -235,15 +237,22 @@ export class Tiles {
     return this.takes === null || this.takes.has(name);
   }
 
-  /** The labels of the tiles on the board that have power, and how many show each. */
-  count() {
+  /** The label that a tile's face shows: it is some milliseconds ahead of what the tile says. @param {Tile} tile */
+  shown(tile) {
+    const isLit = tile.powered && tile.segments !== 0 && tile.rgb.some((part) => part > 0);
+    const like = isLit ? this.looks.filter(({ segments }) => segments === tile.segments) : [];
+    return like.length === 1 ? like[0].label : tile.label;
+  }
+
+  /** The labels of the tiles on the board that have power, and how many show each. @param {(tile: Tile) => string} labelOf */
+  count(labelOf = (tile) => this.shown(tile)) {
     /** @type {Map<string, number>} */
     const counts = new Map();
     let total = 0;
     for (const tile of this.byPort.values()) {
       if (!tile.place || !tile.powered) continue;
       total++;
-      counts.set(tile.label, (counts.get(tile.label) ?? 0) + 1);
+      counts.set(labelOf(tile), (counts.get(labelOf(tile)) ?? 0) + 1);
     }
     return { counts, total };
   }

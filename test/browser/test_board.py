@@ -124,8 +124,17 @@ def test_the_last_deed_is_taken_back_or_there_is_none(paused: Visit) -> None:
     paused.pull("tile-11")
     paused.wait_for_verdict("All 15 tiles show 8")
     page.keyboard.press("Control+z")
-    page.locator("#notice", has_text="before what hands did at 0.90 s").wait_for()
+    page.locator("#notice", has_text="Taken back: tile 11 pulled out.").wait_for()
     paused.wait_for_verdict("All 16 tiles show 8")
+    page.get_by_role("button", name="One update").click()
+    paused.wait_until("document.getElementById('clock').textContent === '0.92 s'")
+    assert page.locator(".tile").count() == 16
+    paused.forgiven = ("willReadFrequently",)  # only the test reads the canvas
+    page.set_viewport_size({"width": 1280, "height": 700})  # cables are drawn anew, though time stands
+    paused.wait_until(
+        "[document.querySelector('.cables')].some((one) => "
+        "one.getContext('2d').getImageData(0, 0, one.width, one.height).data.some(Boolean))"
+    )
 
 
 def test_what_draw_does_is_said_until_both_were_done(paused: Visit) -> None:

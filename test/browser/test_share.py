@@ -74,6 +74,13 @@ def test_a_recording_is_replayed_forwards_and_backwards(shared: Visit, tmp_path:
     page.get_by_role("button", name="Go on").click()
     shared.wait_for_verdict("All 15 tiles show 9")
     page.wait_for_selector("[data-port=tile-11]", state="detached")
+    page.locator("#moment").fill("650")
+    shared.wait_for_verdict("All 16 tiles show 8")
+    page.get_by_role("button", name="Back to running tiles").click()
+    page.locator("#notice", has_text=f"Back to the run, which stands at {end:.2f} s").wait_for()
+    shared.wait_for_verdict("All 15 tiles show 9")
+    assert f"{end:.2f} of {end:.2f} s" in page.inner_text("#timeline")
+    assert page.get_by_role("button", name="Surprise me").is_visible()
 
 
 def test_a_recording_that_was_cut_off_is_replayed_as_far_as_it_is_whole(

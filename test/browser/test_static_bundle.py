@@ -3,6 +3,7 @@
 import gzip
 import shutil
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -116,8 +117,13 @@ def test_another_model_is_fetched_by_whoever_chooses_it(
         page.goto(f"{url}?model=64EB&shape=pentominoes/X&speed=0.5&spread=0.1")
         visit.wait_for_verdict("All 5 tiles show X")
         assert page.input_value("#model") == "pentominoes"
-        page.get_by_label("Model").select_option("digits")
-        visit.wait_for_verdict("All 16 tiles show 8")
+        page.goto(f"{url}?draw=1-1&speed=0.5&spread=0.1&fault=cut@1S&look=sure")
+        visit.wait_until("document.querySelectorAll('.tile').length === 2")
+        page.get_by_label("Model").select_option("pentominoes")
+        visit.wait_until("location.search.includes('model=64EB')")
+        kept = ("draw=1-1&", "speed=0.5&", "fault=cut@1S", "spread=0.1", "look=sure")
+        assert [part for part in kept if part not in unquote(page.url)] == []
+        visit.wait_until("document.getElementById('verdict').textContent !== 'The tiles boot'")
 
 
 def test_it_is_small(bundle: Path) -> None:

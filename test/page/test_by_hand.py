@@ -30,14 +30,14 @@ def test_each_command_reaches_its_tile(firmware: Path) -> None:
             hands.Power("tile-03", False),
             hands.Cut("tile-04", "N"),
         ):
-            do_by_hand(board, array, command)
+            do_by_hand(board, command)
         assert board.places == {1: (-1, 1), 3: (0, 1), 2: (2, 1)}
         assert [board.fault_of(tile) for tile in (1, 2, 3)] == [(True, 0.0), (False, 0.0), (False, -250.0)]
         assert len(board.cut) == 1
         assert not array[2].powered
-        do_by_hand(board, array, hands.Arrange(((0, 0), (0, 1))))
+        do_by_hand(board, hands.Arrange(((0, 0), (0, 1))))
         assert set(board.places.values()) == {(0, 0), (0, 1)}
-        do_by_hand(board, array, hands.Noise(0.25))
+        do_by_hand(board, hands.Noise(0.25))
         assert emulation.faults.everywhere == {"loss": 0.25}
 
 
@@ -45,10 +45,10 @@ def test_a_tile_that_is_not_there_and_one_too_many_are_refused(firmware: Path) -
     rows = ("#" * MOST_TILES,)
     settings = EmulationSettings(boot_spread_s=0.0)
     emulation = Emulation(Shape("-", rows, "-"), ("0",), firmware, settings, firmware_settings(firmware))
-    with emulation.array as array:
+    with emulation.array:
         board = Arrangement(emulation, [(0, col) for col in range(MOST_TILES)])
         assert tile_of(board, "tile-02") == 1
         with pytest.raises(UsageError, match="no tile tile-999 lies on the board"):
-            do_by_hand(board, array, hands.Reset("tile-999"))
+            do_by_hand(board, hands.Reset("tile-999"))
         with pytest.raises(UsageError, match="which is all; take one out first"):
-            do_by_hand(board, array, hands.Put(1, 0))
+            do_by_hand(board, hands.Put(1, 0))

@@ -275,6 +275,20 @@ def test_another_deed_in_the_past_begins_another_future(source: EmulatedSource) 
     assert "tile-10" not in {event["port"] for event in of(events, "place")}
 
 
+def test_a_deed_is_taken_back_and_the_tiles_run_on_without_it(source: EmulatedSource) -> None:
+    source.take(commands.Open(FOUR, spread_s=0.1, paused=True))
+    said(source, 6)
+    source.take(hands.Pull("tile-04"))
+    said(source, 2)
+    source.take(commands.Seek(0.2999, forget=True))
+    jump, *state = source.advance(0.0)
+    assert jump["jump"]["forget"] is True
+    assert of(state, "pace")[-1]["pace"]["end"] == pytest.approx(0.2999, abs=2e-5)
+    events = said(source, 6)
+    assert of(events, "place") == []
+    assert labels(events).keys() >= {"tile-04"}
+
+
 def test_there_is_no_past_before_a_run(source: EmulatedSource) -> None:
     with pytest.raises(UsageError, match="nothing runs yet"):
         source.take(commands.Seek(0.0))

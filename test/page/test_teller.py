@@ -81,3 +81,26 @@ def test_after_a_jump_all_is_told_with_the_last_lines(
     assert {("tile-01", "$HELLO"), ("tile-03", "$TILE")} <= set(lines)
     assert all(event["time"] <= 0.21 for event in before)
     assert teller.look(frames=False) == []
+
+
+def test_what_a_tile_showed_is_over_when_it_starts_anew(
+    told: tuple[Emulation, Arrangement, Teller],
+) -> None:
+    """Reset, moved, or taken out and put in at once: until it speaks again nothing is known of it."""
+    emulation, board, teller = told
+    emulation.pass_time(0.3)
+    teller.look(frames=False)
+    assert [event["port"] for event in teller.all() if event.get("raw", "").startswith("$TILE")] == [
+        "tile-01", "tile-02", "tile-03"
+    ]  # fmt: skip
+    moment, said = board.save(), teller.save()
+    board.reset(0)
+    board.move(1, (1, 0))
+    news = [(event["port"], event["open"]) for event in teller.places() if "open" in event]
+    assert news == [(port, on) for port in ("tile-01", "tile-02") for on in (False, True)]
+    emulation.pass_time(0.001)  # no tile has booted by then
+    silent = [event["port"] for event in teller.all() if event.get("raw", "").startswith("$TILE")]
+    assert silent == ["tile-03"]
+    board.restore(moment)
+    teller.restore(said)
+    assert len([event for event in teller.all() if event.get("raw", "").startswith("$TILE")]) == 3

@@ -21,6 +21,7 @@ GOOD: list[tuple[dict[str, Any], object]] = [
     ({"do": "rest", "on": True}, commands.Rest(True)),
     ({"do": "step", "seconds": 0.02}, commands.Step(0.02)),
     ({"do": "seek", "seconds": 0}, commands.Seek(0.0)),
+    ({"do": "seek", "seconds": 1, "forget": True}, commands.Seek(1.0, forget=True)),
     ({"do": "instruct", "port": "tile-03"}, commands.Instruct("tile-03", 1)),
     (
         {

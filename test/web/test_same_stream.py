@@ -191,13 +191,14 @@ def test_time_goes_backwards_alike(both: Any) -> None:
     commands += [{"do": "seek", "seconds": 0.21}, *[step] * 11, {"do": "seek", "seconds": 0.5}, step]
     commands += [{"do": "seek", "seconds": 0.0}, *[step] * 2, {"do": "noise", "loss": 0.1}, *[step] * 3]
     commands += [{"do": "seek", "seconds": 9}, {"do": "seek", "seconds": 0.1}, step]
+    commands += [{"do": "seek", "seconds": 0.05, "forget": True}, step]
     answers = both(commands)
     after = [events[1:] for events in answers if any("jump" in event for event in events)]
     spoilt = [{event["port"]: event["fault"] for event in events if "fault" in event} for events in after]
     known = {"tile-02": {"turned": True, "skew": 0}, "tile-03": {"turned": False, "skew": 5000}}
-    assert spoilt == [{}, known, {}, {}, {}]  # told anew where they stand
+    assert spoilt == [{}, known, {}, {}, {}, {}]  # told anew where they stand
     jumps = [event for events in answers for event in events if "jump" in event]
-    came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25], [0.21, 0.5, 0.0, 0.25, 0.1]
+    came_from, went_to = [0.7, 0.76, 0.55, 0.25, 0.25, 0.15], [0.21, 0.5, 0.0, 0.25, 0.1, 0.05]
     assert [event["jump"]["from"] for event in jumps] == pytest.approx(came_from, abs=1e-4)
     assert [event["time"] for event in jumps] == pytest.approx(went_to, abs=1e-4)
 

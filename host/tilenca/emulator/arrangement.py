@@ -89,14 +89,14 @@ class Arrangement:
         tile = min(in_box) if in_box else self._new_tile()
         if (period_ms := self._emulation.period_ms) is not None:
             self._array[tile].write_eeprom(0, settings_block(tile + 1, period_ms, FOR_EVER))
-        self._array[tile].powered = True
+        self._emulation.faults.power(tile, True)
         self._plug_in(tile, place)
         return tile
 
     def pull(self, tile: int) -> None:
         """Takes a tile away, with its cables."""
         self._unplug([link for link in self._emulation.cables if tile in (link[0], link[2])])
-        self._array[tile].powered = False
+        self._emulation.faults.power(tile, False)
         self._emulation.faults.lay_straight(tile, True)
         del self.places[tile]
 
@@ -110,7 +110,7 @@ class Arrangement:
             raise UsageError("another tile lies there; choose an empty place")
         if self.places[tile] != place:
             self.pull(tile)
-            self._array[tile].powered = True
+            self._emulation.faults.power(tile, True)
             self._plug_in(tile, place)
 
     def shift(self, tiles: Collection[int], rows: int, cols: int) -> None:
@@ -135,6 +135,18 @@ class Arrangement:
             self.pull(tile)
         for place in sorted(set(cells) - set(self.places.values())):
             self.put(place)
+
+    def power(self, tile: int, on: bool) -> None:
+        """Switches a tile on or off where it lies."""
+        self._emulation.faults.power(tile, on)
+
+    def reset(self, tile: int) -> None:
+        """Starts a tile's program anew."""
+        self._emulation.faults.reset(tile)
+
+    def started_s(self, tile: int) -> float:
+        """When a tile was switched on or reset last; below 0 where it never was since the beginning."""
+        return self._emulation.faults.restarted_s.get(tile, -1.0)
 
     def freeze(self, tile: int, on: bool) -> None:
         """Tells a tile over USB to update no more, or for ever; until then it does as before."""

@@ -132,6 +132,8 @@ class Emulation:
             TilencaError: a tile stopped at a fault of its program.
         """
         for tile in self.faults.run(seconds):
+            if tile >= len(self._voices):
+                continue  # a hand has put it in; nobody listens to it here
             self._voices[tile].restart()  # its sentences before the reset no longer count
             self.switch_on_s[tile] = self.faults.restarted_s[tile]
 

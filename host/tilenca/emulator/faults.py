@@ -95,7 +95,7 @@ class Faults:
             self._plan_switch(spec, [partial(self.connect, end) for end in self._ends(spec)])
         elif spec.kind == "off":
             tiles = self._tiles(spec)
-            self._plan_switch(spec, [partial(self._power, tile) for tile in tiles])
+            self._plan_switch(spec, [partial(self.power, tile) for tile in tiles])
         elif spec.kind == "turn":
             self._plan_switch(spec, [partial(self.lay_straight, tile) for tile in self._tiles(spec)])
         else:
@@ -114,12 +114,8 @@ class Faults:
                 self._plan(spec.to_s, partial(switch, True))
 
     def _action(self, spec: FaultSpec, tile: int) -> Callable[[], None]:
-        def reset() -> None:
-            self.array[tile].reset()
-            self.restarted_s[tile] = self.array.time_s
-
         if spec.kind == "reset":
-            return reset
+            return lambda: self.reset(tile)
         if spec.kind == "remove":
             return lambda: self.array.remove_tile(tile)
         if spec.kind == "adc":
@@ -226,12 +222,18 @@ class Faults:
         for end in sorted(end for link in self.links for end in (link[:2], link[2:])):
             if end[0] == tile:
                 self.connect(end, on)
-        self._power(tile, on)
+        self.power(tile, on)
 
-    def _power(self, tile: int, on: bool) -> None:
+    def power(self, tile: int, on: bool) -> None:
+        """Switches a tile on or off."""
         self.array[tile].powered = on
         if on:
             self.restarted_s[tile] = self.array.time_s
+
+    def reset(self, tile: int) -> None:
+        """Starts a tile's program anew, as its reset pin does."""
+        self.array[tile].reset()
+        self.restarted_s[tile] = self.array.time_s
 
     # --- where they do it ---
 

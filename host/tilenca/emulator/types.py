@@ -67,6 +67,11 @@ def port_name(index: int) -> str:
     return f"tile-{index + 1:02d}"
 
 
+def port_index(name: str) -> int:
+    """The index of the tile with that port."""
+    return int(name.removeprefix("tile-")) - 1
+
+
 def last_begun(changes: Iterable[DisplayChange], shows: Callable[[int], bool]) -> float:
     """When a display last began to show something, in seconds; 0 where it never did.
 

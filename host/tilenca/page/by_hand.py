@@ -3,7 +3,6 @@
 from tilenca.base.errors import UsageError
 from tilenca.base.sides import SIDES
 from tilenca.emulator.arrangement import Arrangement
-from tilenca.emulator.array import Array
 from tilenca.emulator.types import port_name
 from tilenca.protocol import stream_hands as hands
 from tilenca.protocol.commands import blink_command, restart_command, set_command
@@ -22,7 +21,7 @@ def tile_of(board: Arrangement, port: str) -> int:
     raise UsageError(f"no tile {port} lies on the board")
 
 
-def do_by_hand(board: Arrangement, array: Array, command: hands.Hand) -> None:
+def do_by_hand(board: Arrangement, command: hands.Hand) -> None:
     """Does it, now or once more in a past that is run again.
 
     Raises:
@@ -44,7 +43,7 @@ def do_by_hand(board: Arrangement, array: Array, command: hands.Hand) -> None:
         case hands.Cut(port, side, on):
             board.connect(tile_of(board, port), SIDES.index(side), not on)
         case hands.Power(port, on):
-            array[tile_of(board, port)].powered = on
+            board.power(tile_of(board, port), on)
         case hands.Freeze(port, on):
             board.freeze(tile_of(board, port), on)
         case hands.Turn(port, on):
@@ -52,7 +51,7 @@ def do_by_hand(board: Arrangement, array: Array, command: hands.Hand) -> None:
         case hands.Skew(port, ppm):
             board.skew(tile_of(board, port), ppm)
         case hands.Reset(port):
-            array[tile_of(board, port)].reset()
+            board.reset(tile_of(board, port))
         case hands.Noise(loss):
             board.lose(loss)
         case hands.Blink(port, seconds):

@@ -105,8 +105,8 @@ class EmulatedSource:
                 if self._pace.paused and self._emulation is not None:
                     self._run(seconds)
                     self._pace.set(self._pace.speed, paused=True)
-            case commands.Seek(seconds):
-                self._seek(seconds)
+            case commands.Seek(seconds, forget):
+                self._seek(seconds, forget)
             case commands.Instruct(port, count):
                 self._instruct(port, count)
             case commands.Seen():
@@ -120,7 +120,7 @@ class EmulatedSource:
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
         self._release()
-        do_by_hand(self._board, self._array, command)
+        do_by_hand(self._board, command)
         self._timeline.note(self._array.time_s, command)
         self._keep()
         self._tell_pace()  # another future begins
@@ -129,7 +129,7 @@ class EmulatedSource:
     def _do_planned(self, planned: commands.Deed) -> None:
         """What a hand does at its time; what cannot be done is told, and forgotten."""
         try:
-            do_by_hand(self._board, self._array, planned[1])
+            do_by_hand(self._board, planned[1])
         except UsageError as error:
             self._timeline.forget(planned)
             self._events.append(refused_event(0.0, str(error)))
@@ -231,8 +231,8 @@ class EmulatedSource:
         size = len(moment.snapshot) + VOICE_BYTES * len(said)
         self._timeline.keep(moment.time_s, _Moment(moment, said), size)
 
-    def _seek(self, time_s: float) -> None:
-        """Goes to a time that the run has been at; all that hands did until then is done."""
+    def _seek(self, time_s: float, forget: bool) -> None:
+        """Goes to a time that the run has been at; what hands did until then is done."""
         if self._emulation is None:
             raise UsageError("nothing runs yet; open a drawing first")
         self._release()
@@ -243,8 +243,10 @@ class EmulatedSource:
             self._teller.restore(moment.said)
         self._pace.set(self._pace.speed, paused=True)
         self._pass_time(time_s - self._array.time_s)
+        if forget:
+            self._timeline.end_at(self._array.time_s)
         self._events = [event for event in self._events if "run" in event or "refused" in event]
-        self._events += [jump_event(self._array.time_s, from_s), *self._teller.all()]
+        self._events += [jump_event(self._array.time_s, from_s, forget), *self._teller.all()]
         self._tell_pace()
 
     # --- what the page is told ---

@@ -7,7 +7,7 @@ from tilenca.base.sides import SIDES
 from tilenca.emulator.arrangement import Arrangement, Place
 from tilenca.emulator.array import Array, Link
 from tilenca.emulator.telemetry import heard_from
-from tilenca.emulator.types import port_name
+from tilenca.emulator.types import port_index, port_name
 from tilenca.page.outbox import subject_of
 from tilenca.protocol.line_reader import LineReader
 from tilenca.protocol.stream import (
@@ -22,6 +22,7 @@ from tilenca.protocol.stream import (
 )
 
 NO_POWER = "no power"
+RESTARTED = "it starts anew"
 # What a copy of a voice takes, measured.
 VOICE_BYTES = 600
 
@@ -32,6 +33,7 @@ class _Seen:
 
     place: Place | None = None
     powered: bool | None = None
+    started_s: float | None = None
     display: tuple[int, tuple[int, ...], str] | None = None
     fault: tuple[bool, float] = (False, 0.0)
 
@@ -74,6 +76,12 @@ class Teller:
             if place != seen.place:
                 seen.place = place
                 events.append(place_event(now_s, port, place))
+            started_s = self._board.started_s(tile.index)
+            is_anew = seen.started_s not in (None, started_s)
+            seen.started_s = started_s
+            if place is not None and tile.powered and seen.powered and is_anew:
+                seen.powered = False  # what it showed is over
+                events.append(open_event(now_s, port, False, RESTARTED))
             if place is not None and tile.powered != seen.powered:
                 seen.powered = tile.powered
                 events.append(open_event(now_s, port, tile.powered, "" if tile.powered else NO_POWER))
@@ -99,7 +107,16 @@ class Teller:
                 frame_event(frame.time_s, port_name(frame.tile), SIDES[frame.side], frame.data)
                 for frame in passed
             ]
-        return events + self._lines()
+        lines = self._lines()
+        old = [event for event in lines if self._is_over(event)]
+        return [*old, *events, *(event for event in lines if not self._is_over(event))]
+
+    def _is_over(self, said: StreamEvent) -> bool:
+        """Whether a line tells what a tile showed before it was switched on or reset last."""
+        if not said["raw"].startswith("$TILE,"):
+            return False
+        time_s: float = said["time"]
+        return time_s <= self._board.started_s(port_index(said["port"]))
 
     def _lines(self) -> list[StreamEvent]:
         said = []
@@ -127,7 +144,8 @@ class Teller:
         """Everything, for a page that knows nothing; lines have the times at which they were said."""
         self._seen, self._seen_cut = [], set()
         self.look(frames=False)
-        said = sorted((event for voice in self._voices for event in voice.last.values()), key=_moment)
+        last = (event for voice in self._voices for event in voice.last.values())
+        said = sorted((event for event in last if not self._is_over(event)), key=_moment)
         self._seen, self._seen_cut = [], set()
         return [*self.places(), *said, *self.look(frames=False)]
 

@@ -72,9 +72,14 @@ class Timeline(Generic[Moment, Deed]):
 
         The moment of now is void, too: keep it anew, with what the hand has done.
         """
-        self._deeds = [(time_s, one) for time_s, one in self._deeds if time_s <= now_s + QUANTUM_S / 2]
+        self.end_at(now_s)
         self._kept = [kept for kept in self._kept if kept.time_s < now_s - QUANTUM_S / 2]
         self._deeds.append((now_s, deed))
+
+    def end_at(self, now_s: float) -> None:
+        """What was known and planned beyond is void."""
+        self._deeds = [(time_s, one) for time_s, one in self._deeds if time_s <= now_s + QUANTUM_S / 2]
+        self._kept = [kept for kept in self._kept if kept.time_s <= now_s + QUANTUM_S / 2]
         self.end_s = now_s
 
     def forget(self, planned: tuple[float, Deed]) -> None:

@@ -49,9 +49,15 @@ def run_event(time_s: float, about: Mapping[str, object]) -> StreamEvent:
     return _event(time_s, run=dict(about))
 
 
-def jump_event(time_s: float, from_s: float) -> StreamEvent:
-    """The run has gone to another of its moments: what was known of tiles is void, and told anew."""
-    return _event(time_s, jump={"from": round(from_s, 6)})
+def jump_event(time_s: float, from_s: float, forget: bool = False) -> StreamEvent:
+    """The run has gone to another of its moments: what was known of tiles is void, and told anew.
+
+    Args:
+        time_s: of that moment.
+        from_s: the time before.
+        forget: what hands did later is taken back.
+    """
+    return _event(time_s, jump={"from": round(from_s, 6), **({"forget": True} if forget else {})})
 
 
 def pace_event(time_s: float, speed: float, paused: bool, share: float, end_s: float | None) -> StreamEvent:

@@ -84,9 +84,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Seek:
-    """Goes to a time that the run has been at, and pauses there."""
+    """Goes to a time that the run has been at, and pauses there; `forget` takes later deeds back."""
 
     seconds: float = checked(must_be.number(0, MAX_SECONDS))
+    forget: bool = checked(must_be.switch, False)
 
 
 @dataclass(frozen=True)

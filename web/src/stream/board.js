@@ -98,14 +98,14 @@ export class Board {
     while (tile < this.array.size && this.places.has(tile)) tile++;
     if (tile === this.array.size) this.array.addTile(new Chance(`${this.run.seed} tile ${tile}`).uniform(-PPM, PPM));
     this.#writeSettings(tile, FOR_EVER);
-    this.array.tile(tile).powered = true;
+    this.faults.power(tile, true);
     this.#plugIn(tile, place);
   }
 
   /** Takes a tile away, with its cables. @param {number} tile */
   pull(tile) {
     this.#unplug(this.cables.filter(([one, , other]) => one === tile || other === tile));
-    this.array.tile(tile).powered = false;
+    this.faults.power(tile, false);
     this.faults.turn(tile, false);
     this.places.delete(tile);
   }
@@ -116,7 +116,7 @@ export class Board {
     if (there === tile) return;
     if (there !== undefined) throw new TilencaError("another tile lies there; choose an empty place");
     this.pull(tile);
-    this.array.tile(tile).powered = true;
+    this.faults.power(tile, true);
     this.#plugIn(tile, place);
   }
 

@@ -114,7 +114,7 @@ const KINDS = {
   pace: { speed: [speed], paused: [truth, false] },
   rest: { on: [truth] },
   step: { seconds: [number(16e-6, 10)] },
-  seek: { seconds: [number(0, MAX_SECONDS)] },
+  seek: { seconds: [number(0, MAX_SECONDS)], forget: [truth, false] },
   instruct: { port: [text], count: [whole(0, MOST_INSTRUCTIONS), 1] },
   put: { row: [place], col: [place] },
   pull: { port: [text] },

@@ -78,6 +78,8 @@ export class Faults {
   turned = new Set();
   /** By how much the clocks of tiles are too fast now, in ppm. @type {Map<number, number>} */
   skewed = new Map();
+  /** When each tile was switched on or reset last, of those that were. @type {Map<number, number>} */
+  restarted = new Map();
   /** What all cables have now. @type {Map<string, number>} */
   #everywhere = new Map();
   /** @type {{ timeS: number, order: number, act: () => void }[]} */
@@ -100,7 +102,7 @@ export class Faults {
   save() {
     const spoilt = new Map([...this.#spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
     return {
-      cut: new Set(this.cut), turned: new Set(this.turned), skewed: new Map(this.skewed),
+      cut: new Set(this.cut), turned: new Set(this.turned), skewed: new Map(this.skewed), restarted: new Map(this.restarted),
       everywhere: new Map(this.#everywhere), due: [...this.#due], spoilt,
     };
   }
@@ -110,6 +112,7 @@ export class Faults {
     this.cut = new Set(moment.cut);
     this.turned = new Set(moment.turned);
     this.skewed = new Map(moment.skewed);
+    this.restarted = new Map(moment.restarted);
     this.#everywhere = new Map(moment.everywhere);
     this.#due = [...moment.due];
     this.#spoilt = new Map([...moment.spoilt].map(([end, kinds]) => [end, new Map(kinds)]));
@@ -129,10 +132,7 @@ export class Faults {
     } else if (kind === "cut") {
       this.#planSwitch(spec, this.#ends(spec).map((end) => (on) => this.connect(end, on)), false);
     } else if (kind === "off") {
-      const setPower = this.#tiles(spec).map((tile) => (/** @type {boolean} */ on) => {
-        this.array.tile(tile).powered = on;
-      });
-      this.#planSwitch(spec, setPower, false);
+      this.#planSwitch(spec, this.#tiles(spec).map((tile) => (/** @type {boolean} */ on) => this.power(tile, on)), false);
     } else if (kind === "turn") {
       this.#planSwitch(spec, this.#tiles(spec).map((tile) => (/** @type {boolean} */ on) => this.turn(tile, on)), true);
     } else {
@@ -161,7 +161,7 @@ export class Faults {
   /** @param {Spec} spec @param {number} index */
   #act(spec, index) {
     const tile = this.array.tile(index);
-    if (spec.kind === "reset") tile.reset();
+    if (spec.kind === "reset") this.reset(index);
     else if (spec.kind === "remove") this.array.removeTile(index);
     else if (spec.kind === "adc") tile.setAdcNoise(spec.value, this.seed);
     else if (spec.kind === "supply") tile.setSupply(spec.value);
@@ -195,6 +195,18 @@ export class Faults {
   }
 
   // --- what they do ---
+
+  /** Switches a tile on or off. @param {number} tile @param {boolean} on */
+  power(tile, on) {
+    this.array.tile(tile).powered = on;
+    if (on) this.restarted.set(tile, this.array.timeS);
+  }
+
+  /** Starts a tile's program anew, as its reset pin does. @param {number} tile */
+  reset(tile) {
+    this.array.tile(tile).reset();
+    this.restarted.set(tile, this.array.timeS);
+  }
 
   /** @param {readonly End[]} ends @param {string} kind @param {number} value */
   #spoil(ends, kind, value) {

@@ -38,8 +38,7 @@ export function doByHand(board, command) {
     case "cut":
       return board.connect(tile(command.port), SIDES.indexOf(command.side), !command.on);
     case "power":
-      board.array.tile(tile(command.port)).powered = command.on;
-      return undefined;
+      return board.faults.power(tile(command.port), command.on);
     case "freeze":
       return board.freeze(tile(command.port), command.on);
     case "turn":
@@ -47,7 +46,7 @@ export function doByHand(board, command) {
     case "skew":
       return board.faults.skew(tile(command.port), command.ppm);
     case "reset":
-      return board.array.tile(tile(command.port)).reset();
+      return board.faults.reset(tile(command.port));
     case "noise":
       return board.faults.spoilAll("loss", command.loss);
     case "blink":

@@ -89,7 +89,7 @@ export class EmulatedSource {
         this.#instruct(command.port, command.count);
         break;
       case "seek":
-        this.#seek(command.seconds);
+        this.#seek(command.seconds, command.forget);
         break;
       default:
         this.#layHandsOn(command);
@@ -237,8 +237,11 @@ export class EmulatedSource {
     this.#timeline.keep(moment.timeS, { board: moment, said }, moment.snapshot.length + VOICE_BYTES * said.length);
   }
 
-  /** Goes to a time that the run has been at; all that hands did until then is done. @param {number} wantedS */
-  #seek(wantedS) {
+  /**
+   * Goes to a time that the run has been at; all that hands did until then is done.
+   * @param {number} wantedS @param {boolean} forget what they did later is taken back
+   */
+  #seek(wantedS, forget) {
     const board = this.#board;
     if (!board) throw new TilencaError("nothing runs yet; open a drawing first");
     this.#release();
@@ -250,8 +253,9 @@ export class EmulatedSource {
     }
     this.#pace.set(this.#pace.speed, true);
     this.#passTime(board, timeS - board.array.timeS);
+    if (forget) this.#timeline.endAt(board.array.timeS);
     this.#events = this.#events.filter((one) => "run" in one || "refused" in one);
-    this.#tell(board.array.timeS, { jump: { from: Number(fromS.toFixed(6)) } });
+    this.#tell(board.array.timeS, { jump: { from: Number(fromS.toFixed(6)), ...(forget && { forget }) } });
     this.#events.push(...this.#teller.all());
     this.#tellPace();
   }

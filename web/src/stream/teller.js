@@ -6,11 +6,12 @@ import { SIDES } from "./sides.js";
 import { subjectOf } from "./subject.js";
 
 const NO_POWER = "no power";
+const RESTARTED = "it starts anew";
 const MOST_REFUSAL = 300; // characters
 const UNSPOILT = JSON.stringify({ turned: false, skew: 0 });
 
 /** @typedef {{ time: number, [subject: string]: unknown }} StreamEvent */
-/** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, fault: string, display: string }} Seen */
+/** What the page was told of a tile. @typedef {{ place: string, powered: boolean | null, startedS: number | null, fault: string, display: string }} Seen */
 /** What a tile has said: the beginning of its next line, and its last line of each kind. @typedef {{ lines: Lines, last: Map<string, StreamEvent> }} Voice */
 
 /** @param {number} time @param {Record<string, unknown>} about @returns {StreamEvent} */
@@ -45,13 +46,20 @@ export class Teller {
     const now = array.timeS;
     /** @type {StreamEvent[]} */
     const events = [];
-    while (this.#seen.length < array.size) this.#seen.push({ place: "", powered: null, fault: UNSPOILT, display: "" });
+    while (this.#seen.length < array.size) this.#seen.push({ place: "", powered: null, startedS: null, fault: UNSPOILT, display: "" });
     while (this.#voices.length < array.size) this.#voices.push({ lines: new Lines(), last: new Map() });
     this.#seen.forEach((seen, index) => {
       const [port, place, { powered }] = [portName(index), places.get(index), array.tile(index)];
       if ((place?.join() ?? "") !== seen.place) {
         seen.place = place?.join() ?? "";
         events.push(event(now, { port, place: place ? [...place] : null }));
+      }
+      const startedS = this.#startedS(index);
+      const isAnew = ![null, startedS].includes(seen.startedS);
+      seen.startedS = startedS;
+      if (place && powered && seen.powered && isAnew) {
+        seen.powered = false; // what it showed is over
+        events.push(event(now, { port, open: false, reason: RESTARTED }));
       }
       if (place && powered !== seen.powered) {
         seen.powered = powered;
@@ -88,8 +96,20 @@ export class Teller {
     for (const { timeS, tile, side, data } of frames ? passed : []) {
       events.push(event(timeS, { port: portName(tile), side: SIDES[side], frame: data }));
     }
-    events.push(...this.#lines());
-    return events;
+    const lines = this.#lines();
+    const [old, fresh] = [true, false].map((wanted) =>
+      lines.flatMap(({ index, told }) => (this.#isOver(index, told) === wanted ? [told] : [])));
+    return [...old, ...events, ...fresh];
+  }
+
+  /** When a tile was switched on or reset last; below 0 where it never was since the beginning. @param {number} index */
+  #startedS(index) {
+    return this.board.faults.restarted.get(index) ?? -1;
+  }
+
+  /** Whether a line tells what a tile showed before it was switched on or reset last. @param {number} index @param {StreamEvent} told */
+  #isOver(index, told) {
+    return String(told.raw).startsWith("$TILE,") && told.time <= this.#startedS(index);
   }
 
   #lines() {
@@ -102,7 +122,7 @@ export class Teller {
         return { timeS, index, told };
       });
     });
-    return said.sort((one, two) => one.timeS - two.timeS || byPort(one.index, two.index)).map(({ told }) => told);
+    return said.sort((one, two) => one.timeS - two.timeS || byPort(one.index, two.index));
   }
 
   // --- moments ---
@@ -129,7 +149,8 @@ export class Teller {
   all() {
     this.#forget();
     this.look(false);
-    const said = this.#voices.flatMap(({ last }, index) => [...last.values()].map((told) => ({ index, told })));
+    const said = this.#voices.flatMap(({ last }, index) =>
+      [...last.values()].flatMap((told) => (this.#isOver(index, told) ? [] : [{ index, told }])));
     said.sort((one, two) => one.told.time - two.told.time || byPort(one.index, two.index));
     this.#forget();
     return [...this.places(), ...said.map(({ told }) => told), ...this.look(false)];

@@ -55,9 +55,15 @@ export class Timeline {
 
   /** A hand has done something: the future that was known is void, and the moment of now. @param {number} nowS @param {D} deed */
   note(nowS, deed) {
-    this.#deeds = this.#deeds.filter(({ timeS }) => timeS <= nowS + HALF_S);
+    this.endAt(nowS);
     this.#kept = this.#kept.filter(({ timeS }) => timeS < nowS - HALF_S);
     this.#deeds.push({ timeS: nowS, deed });
+  }
+
+  /** What was known and planned beyond is void. @param {number} nowS */
+  endAt(nowS) {
+    this.#deeds = this.#deeds.filter(({ timeS }) => timeS <= nowS + HALF_S);
+    this.#kept = this.#kept.filter(({ timeS }) => timeS <= nowS + HALF_S);
     this.endS = nowS;
   }
 
