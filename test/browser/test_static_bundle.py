@@ -113,14 +113,14 @@ def test_another_model_is_fetched_by_whoever_chooses_it(
         assert not any("pentominoes" in address for address in visit.requests)
         page.get_by_label("Model").select_option("pentominoes")
         visit.wait_for_verdict("All 5 tiles show F")
-        assert "model=64EB" in page.url
-        page.goto(f"{url}?model=64EB&shape=pentominoes/X&speed=0.5&spread=0.1")
+        assert "model=B791" in page.url
+        page.goto(f"{url}?model=B791&shape=pentominoes/X&speed=0.5&spread=0.1")
         visit.wait_for_verdict("All 5 tiles show X")
         assert page.input_value("#model") == "pentominoes"
         page.goto(f"{url}?draw=1-1&speed=0.5&spread=0.1&fault=cut@1S&look=sure")
         visit.wait_until("document.querySelectorAll('.tile').length === 2")
         page.get_by_label("Model").select_option("pentominoes")
-        visit.wait_until("location.search.includes('model=64EB')")
+        visit.wait_until("location.search.includes('model=B791')")
         kept = ("draw=1-1&", "speed=0.5&", "fault=cut@1S", "spread=0.1", "look=sure")
         assert [part for part in kept if part not in unquote(page.url)] == []
         visit.wait_until("document.getElementById('verdict').textContent !== 'The tiles boot'")

@@ -161,8 +161,8 @@ def test_the_model_of_a_file_is_found_by_what_the_file_says(
 
 def test_a_model_without_a_dash_says_so() -> None:
     assert without_a_dash(DIGITS) is None
-    pentominoes = load_model(paths.MODELS / "pentominoes")
-    assert "has no class for other drawings" in str(without_a_dash(pentominoes))
+    paper = load_model(paths.MODELS / "paper")
+    assert "has no class for other drawings" in str(without_a_dash(paper))
 
 
 def test_a_wrong_answer_is_told_by_whether_the_model_was_made_of_the_drawings(tmp_path: Path) -> None:

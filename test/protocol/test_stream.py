@@ -51,7 +51,7 @@ def test_what_a_tile_said_is_read_back_to_the_byte() -> None:
     assert event == Heard(1.5, "tile-01", raw, parse_sentence(raw))
 
 
-@pytest.mark.parametrize("kind", [kind for kind in stream.KINDS if kind not in ("raw", "open")])
+@pytest.mark.parametrize("kind", [kind for kind in stream.KINDS if kind not in ("raw", "open", "place")])
 def test_the_monitor_passes_over_what_is_no_telemetry(kind: str) -> None:
     assert parse_event(json.dumps(EVENTS[kind])) is None
 

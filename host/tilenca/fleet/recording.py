@@ -156,12 +156,17 @@ def parse_event(line: str) -> Event | Placed | None:
             "reason": str(reason),
         }:
             return PortNews(float(time_s), port, is_open, reason)
-        case {"time": float() | int() as time_s, "port": str(port), "place": place}:
+        case {"time": float() | int() as time_s, "port": str(port), "place": place} if _subjects(about) == 1:
             return Placed(float(time_s), port, _laid(place, about.get("tile")))
-        case {"time": float() | int()} if sum(kind in about for kind in KINDS) == 1:
+        case {"time": float() | int()} if _subjects(about) == 1:
             if "raw" not in about and "open" not in about:
                 return None
     raise ValueError("neither a line nor news of a port")
+
+
+def _subjects(about: Mapping[str, object]) -> int:
+    """How many kinds of events a line has keys of; one, if it is right."""
+    return sum(kind in about for kind in KINDS)
 
 
 def _laid(place: object, tile: object) -> Laid | None:
