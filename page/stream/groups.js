@@ -23,6 +23,24 @@ function reached(tile, tiles, isJoined) {
 /** The tiles that hang together with one by whole cables, itself included. @param {Tiles} tiles @param {Tile} tile */
 export const clusterOf = (tiles, tile) => reached(tile, tiles, (one, side) => !tiles.isCut(one, side));
 
+/** Tiles with power that hear each other, group by group, the largest first. @param {Tiles} tiles @returns {LaidTile[][]} */
+export function clusters(tiles) {
+  /** @type {LaidTile[][]} */
+  const found = [];
+  const seen = new Set();
+  for (const tile of tiles.laid()) {
+    if (!tile.powered || seen.has(tile)) continue;
+    const group = reached(tile, tiles, (one, side) =>
+      ["whole", "failing"].includes(tiles.cableAt(one, side)) && tiles.neighbour(one, side)?.powered === true);
+    for (const one of group) seen.add(one);
+    found.push(group);
+  }
+  return found.sort((one, other) => other.length - one.length);
+}
+
+/** Whether tiles show the same, and not nothing. @param {LaidTile[]} group */
+export const isOfOneMind = (group) => group[0].label !== "" && group.every(({ label }) => label === group[0].label);
+
 /** Whether tiles can move so far: nobody lies there, and the board does not end. @param {Tiles} tiles @param {Shift} shift */
 export function isFree(tiles, { ports, rows, cols }) {
   return ports.every((port) => {
