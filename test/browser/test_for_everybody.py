@@ -30,7 +30,9 @@ LOOK = """() => {
       || box.bottom > board.bottom;
   }).length;
   const tall = document.querySelector(".verdict").offsetHeight > 50;
-  return { wide, cut, over, outside, tall, size: document.querySelector(".tile").offsetWidth };
+  const scores = document.querySelector(".scores:not([hidden] *)")?.getBoundingClientRect();
+  const unseen = scores !== undefined && !(scores.top >= 0 && scores.bottom <= innerHeight);
+  return { unseen, wide, cut, over, outside, tall, size: document.querySelector(".tile").offsetWidth };
 }"""
 
 
@@ -46,8 +48,8 @@ def test_nothing_is_cut_off_or_lies_over_something_else(
             if selected:
                 visit.page.locator("[data-port=tile-06]").click()
             seen = visit.page.evaluate(LOOK)
-            assert {key: seen[key] for key in ("wide", "cut", "over", "outside", "tall")} == {
-                "wide": 0, "cut": [], "over": [], "outside": 0, "tall": False,
+            assert {key: seen[key] for key in ("unseen", "wide", "cut", "over", "outside", "tall")} == {
+                "unseen": False, "wide": 0, "cut": [], "over": [], "outside": 0, "tall": False,
             }  # fmt: skip
             assert seen["size"] >= 48  # a finger can meet it
             found = Axe().run(visit.page)
