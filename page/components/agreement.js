@@ -2,6 +2,7 @@
 
 /** @import { Look } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
+import { mindsOf } from "../stream/groups.js";
 import { seenColour } from "../stream/led.js";
 import { byId, element, setText } from "./dom.js";
 
@@ -103,7 +104,9 @@ export class Agreement {
     const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
     const share = total ? Math.round((100 * most) / total) : 0;
     const changes = tiles.history.changesUntil(tiles.time);
-    setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind`);
+    const groups = share < 100 ? mindsOf(tiles).length : 0;
+    const agree = groups ? `Each of ${groups} groups agrees` : `${share} % agree`;
+    setText(this.text, `${agree}, ${changes} ${changes === 1 ? "change" : "changes"} of mind`);
     this.draw();
   }
 

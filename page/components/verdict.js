@@ -2,7 +2,7 @@
 
 /** @import { Tiles } from "../stream/tiles.js" */
 import { known } from "../stream/drawing.js";
-import { clusters, isOfOneMind } from "../stream/groups.js";
+import { mindsOf } from "../stream/groups.js";
 import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
@@ -44,8 +44,8 @@ export function verdictOn(tiles) {
     const without = off ? `, ${off} ${off === 1 ? "has" : "have"} no power` : "";
     return { text: `${who} ${named(label)}${but}${without}${away}`, label, agreed: true };
   }
-  const groups = clusters(tiles);
-  if (groups.length > 1 && groups.every(isOfOneMind)) {
+  const groups = mindsOf(tiles);
+  if (groups.length) {
     const each = groups.map(([one, ...others]) => `${others.length + 1} show${others.length ? "" : "s"} ${named(one.label)}`);
     const told = groups.length > FEW ? "each of one mind" : each.join(", ");
     return { text: `${groups.length} groups: ${told}${away}`, label, agreed: true };

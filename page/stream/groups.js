@@ -24,7 +24,7 @@ function reached(tile, tiles, isJoined) {
 export const clusterOf = (tiles, tile) => reached(tile, tiles, (one, side) => !tiles.isCut(one, side));
 
 /** Tiles with power that hear each other, group by group, the largest first. @param {Tiles} tiles @returns {LaidTile[][]} */
-export function clusters(tiles) {
+function clusters(tiles) {
   /** @type {LaidTile[][]} */
   const found = [];
   const seen = new Set();
@@ -38,8 +38,13 @@ export function clusters(tiles) {
   return found.sort((one, other) => other.length - one.length);
 }
 
-/** Whether tiles show the same, and not nothing. @param {LaidTile[]} group */
-export const isOfOneMind = (group) => group[0].label !== "" && group.every(({ label }) => label === group[0].label);
+/** Those of several groups where each shows the same, and not nothing; else none. @param {Tiles} tiles */
+export function mindsOf(tiles) {
+  const found = clusters(tiles);
+  /** @param {LaidTile[]} group */
+  const isOfOneMind = (group) => group[0].label !== "" && group.every(({ label }) => label === group[0].label);
+  return found.length > 1 && found.every(isOfOneMind) ? found : [];
+}
 
 /** Whether tiles can move so far: nobody lies there, and the board does not end. @param {Tiles} tiles @param {Shift} shift */
 export function isFree(tiles, { ports, rows, cols }) {

@@ -3,7 +3,7 @@
 /** @import { Command, Place } from "./source.js" */
 /** @import { Tiles } from "./tiles.js" */
 import { cellsOf, known } from "./drawing.js";
-import { clusters, isOfOneMind } from "./groups.js";
+import { mindsOf } from "./groups.js";
 
 /**
  * What has happened since a step began.
@@ -91,10 +91,7 @@ export const STEPS = [
     done: "Each group agrees with itself. They may disagree with each other, and cannot know it.",
     board: "whole",
     tool: "knife",
-    isDone: (tiles) => {
-      const found = clusters(tiles);
-      return found.length > 1 && found.every(isOfOneMind);
-    },
+    isDone: (tiles) => mindsOf(tiles).length > 1,
   },
   {
     title: "What is no digit",
