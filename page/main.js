@@ -3,7 +3,7 @@
 /** @import { Command, Drawing, Place, StreamEvent } from "./stream/source.js" */
 import { Aside } from "./components/aside.js";
 import { Agreement } from "./components/agreement.js";
-import { Bar } from "./components/bar.js";
+import { Bar, toolName } from "./components/bar.js";
 import { Board } from "./components/board.js";
 import { lostWords } from "./components/connection.js";
 import { bring, byId } from "./components/dom.js";
@@ -80,7 +80,10 @@ const deeds = {
     const chosen = port === board.selected ? null : port;
     board.select(chosen);
     inspector.show(chosen);
-    if (chosen) bring(inspector.root.querySelector("header"));
+    hint.update();
+    if (!chosen) return;
+    bring(inspector.scores);
+    board.bring(chosen, inspector.root);
   },
   /** @param {Place} place */
   put: ([row, col]) => send({ do: "put", row, col }),
@@ -163,7 +166,7 @@ const deeds = {
 
 const notice = new Notice(byId("notice"));
 const left = new Left(tiles, run, notice);
-const hint = new Hint(byId("hint"), tiles);
+const hint = new Hint(byId("hint"), tiles, { isBusy: () => board.selected !== null, name: (port) => board.name(port) });
 const board = new Board(byId("board"), tiles, deeds);
 const inspector = new Inspector(byId("inspector"), tiles, deeds);
 const bar = new Bar(byId("bar"), byId("top-deeds"), tiles, deeds);
@@ -194,8 +197,16 @@ const lesson = new Lesson(byId("lesson"), byId("top-deeds"), tiles, {
   open(cells, speed) {
     left.leave();
     run.open({ ...readAddress("", tiles.drawings), cells, speed });
+    bar.showNoise(run.noise);
   },
   selected: () => board.selected,
+  close: () => board.selected && deeds.select(null),
+  quiet: () => run.noise > 0 && deeds.noise(0),
+  tool(tool) {
+    if (board.hands.tool === tool) return "";
+    bar.choose(tool);
+    return toolName(tool);
+  },
   choose: chooseModel,
 });
 const shared = new SharedRun(tiles, run, (command) => source.send(command));

@@ -3,6 +3,7 @@
 /** @import { Look } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { deedMoments } from "../stream/deeds.js";
+import { mindsOf } from "../stream/groups.js";
 import { seenColour } from "../stream/led.js";
 import { byId, element, setText } from "./dom.js";
 
@@ -112,9 +113,11 @@ export class Agreement {
     const most = Math.max(0, ...[...counts].filter(([label]) => label).map(([, count]) => count));
     const share = total ? Math.round((100 * most) / total) : 0;
     const changes = tiles.history.changesUntil(tiles.time);
+    const groups = share < 100 ? mindsOf(tiles).length : 0;
+    const agree = groups ? `Each of ${groups} groups agrees` : `${share} % agree`;
     const deeds = deedMoments(tiles.deeds).filter(({ time }) => time <= tiles.time).length;
     const done = deeds ? `, ${deeds} ${deeds === 1 ? "deed" : "deeds"}` : "";
-    setText(this.text, `${share} % agree, ${changes} ${changes === 1 ? "change" : "changes"} of mind${done}`);
+    setText(this.text, `${agree}, ${changes} ${changes === 1 ? "change" : "changes"} of mind${done}`);
   }
 
   /** The time at a point of the chart, in pixels. @param {number} x @param {number} y */

@@ -3,6 +3,7 @@
 /** @import { Tiles } from "../stream/tiles.js" */
 /** @import { Tool } from "./hands.js" */
 import { element, icon, setText } from "./dom.js";
+import { deliberate } from "./slider.js";
 
 /** Speeds to choose from, times real time; 0: as fast as it can. */
 export const SPEEDS = [0.001, 0.01, 0.03, 0.1, 0.3, 1, 0];
@@ -31,6 +32,9 @@ const TOOLS = [
   ["pencil", "Draw", "Put tiles in, and rub them out (D)"],
   ["knife", "Knife", "Cut cables, click to mend one (K)"],
 ];
+
+/** @param {Tool} tool */
+export const toolName = (tool) => TOOLS.find(([one]) => one === tool)?.[1] ?? "";
 
 /** @param {number} speed */
 export function speedWords(speed) {
@@ -89,6 +93,7 @@ export class Bar {
       oninput: () => deeds.noise(Number(this.noise.value) / 100),
     });
     this.noiseWords = element("output", { for: "noise", class: "speed-words" });
+    for (const slider of [this.slider, this.noise]) deliberate(slider);
     root.append(
       tools,
       element("div", { class: "group time", role: "group", "aria-label": "Time", "data-needs": "pace" }, this.play, this.stepButton,
@@ -124,6 +129,7 @@ export class Bar {
     const words = loss > 0 ? `${percent} %` : "none";
     setText(this.noiseWords, words);
     this.noise.setAttribute("aria-valuetext", words);
+    this.noise.parentElement?.classList.toggle("fault", loss > 0);
   }
 
   update() {

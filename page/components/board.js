@@ -8,13 +8,16 @@
 import { clusterOf, isFree } from "../stream/groups.js";
 import { OFFSETS, SIDES } from "../stream/source.js";
 import { Cables } from "./cables.js";
-import { byId, element, setText } from "./dom.js";
+import { byId, calm, element, narrow, setText } from "./dom.js";
 import { Hands } from "./hands.js";
 import { TileView } from "./tile.js";
-import { View } from "./view.js";
+import { MARGIN_PX, View } from "./view.js";
 
 /** @type {Record<string, number>} */
 const ARROWS = { ArrowUp: 0, ArrowRight: 1, ArrowDown: 2, ArrowLeft: 3 };
+
+// Between a tile and what would lie over it.
+const GAP_PX = 12;
 
 /** @typedef {Pick<Deeds, "select" | "put" | "pull" | "move" | "shift" | "cut"> & {say: (text: string) => void}} BoardDeeds */
 
@@ -36,6 +39,8 @@ export class Board {
     this.lens = null;
     /** The place that Tab leads to. @type {Place} */
     this.at = [0, 0];
+    /** The tile that the hint names; "": none. */
+    this.named = "";
     /** Ports of the tiles in the hand. @type {string[]} */
     this.lifted = [];
     this.isAwake = false;
@@ -106,6 +111,21 @@ export class Board {
     this.wake();
   }
 
+  /** Scrolls the page so that a tile lies above what lies over the lower part of the window. @param {string} port @param {HTMLElement} over */
+  bring(port, over) {
+    const button = this.views.get(port)?.button;
+    if (!button || !narrow.matches) return;
+    const hidden = button.getBoundingClientRect().bottom + GAP_PX - over.getBoundingClientRect().top;
+    if (hidden > 0) window.scrollBy({ top: hidden, behavior: calm.matches ? "auto" : "smooth" });
+  }
+
+  /** Marks the tile that the hint names. @param {string} port "": none */
+  name(port) {
+    if (port === this.named) return;
+    this.named = port;
+    for (const [one, { button }] of this.views) button.classList.toggle("named", one === port);
+  }
+
   /** Looks at the tiles in another way. @param {Lens | null} lens */
   look(lens) {
     this.lens = lens;
@@ -138,12 +158,16 @@ export class Board {
         this.root.append(view.button);
       }
       move(view.button, this.view.corner(...tile.place));
+      view.button.classList.toggle("named", tile.port === this.named);
       view.update(tile, this.tiles.shown(tile), tile.port === this.selected, this.lens);
     }
     for (const port of gone) {
       this.views.get(port)?.button.remove();
       this.views.delete(port);
     }
+    const ys = laid.map(({ place }) => this.view.corner(...place)[1]);
+    this.root.classList.toggle("high", Math.min(...ys) < MARGIN_PX); // words at the upper edge would lie on tiles
+    this.root.classList.toggle("low", Math.max(...ys) + this.view.size > height - MARGIN_PX);
     this.arrangeSpots();
     this.rove(this.at, hadFocus && !this.root.contains(document.activeElement));
   }
@@ -182,8 +206,8 @@ export class Board {
     else if (place) this.deeds.put(placeOf(place));
   }
 
-  /** @param {string[]} ports @param {number} dx @param {number} dy @param {Place | null} place of the pointer */
-  lift(ports, dx, dy, place) {
+  /** @param {string[]} ports @param {number} dx @param {number} dy @param {Place | "out" | null} target under the pointer */
+  lift(ports, dx, dy, target) {
     if (!this.lifted.length) this.cables.flights = [];
     this.lifted = ports;
     this.wake();
@@ -196,12 +220,15 @@ export class Board {
       button?.style.setProperty("translate", `${dx}px ${dy}px`);
     }
     this.root.classList.add("holding");
-    this.root.classList.toggle("out", place === null);
+    const isOut = target === "out";
+    this.root.classList.toggle("out", isOut);
     const what = ports.length > 1 ? "them" : "it";
-    const aims = place && this.landing(ports, place);
-    byId("box").hidden = false;
-    if (!place) setText(byId("box"), `Let go to take ${what} out`);
-    else setText(byId("box"), aims ? `Drag ${what} off the board to take ${what} out` : "There is no room here");
+    const aims = target && !isOut ? this.landing(ports, target) : null;
+    const box = byId("box");
+    box.hidden = false;
+    for (const [name, length] of Object.entries(this.view.outlet())) box.style.setProperty(name, `${length}px`);
+    if (isOut) setText(box, `Let go to take ${what} out`);
+    else setText(box, `${aims || !target ? "Drop" : "No room there; drop"} ${what} here to take ${what} out`);
     for (const [key, spot] of this.spots) spot.classList.toggle("aim", aims?.includes(key) ?? false);
   }
 

@@ -16,7 +16,46 @@ const EDGE = 0.43;
 const START = 0.34;
 
 /** The colour of a cable by its state. */
-export const TOKENS = { whole: "--cable", failing: "--failing", cut: "--cut" };
+const TOKENS = { whole: "--cable", failing: "--failing", cut: "--cut", turned: "--failing" };
+
+/**
+ * Draws a cable: its wires; where it is cut, a cross over their ends; where a tile is turned, a bar before each end.
+ * @param {CanvasRenderingContext2D} pen at the middle of the cable, which lies along x
+ * @param {keyof typeof TOKENS} state @param {number} size pixels of a tile's place
+ * @param {(name: string) => string} token a colour of the style sheet
+ */
+export function drawCable(pen, state, size, token) {
+  const gap = size * (0.5 - EDGE);
+  const isWhole = state === "whole" || state === "failing";
+  pen.strokeStyle = token(TOKENS[state]);
+  pen.lineWidth = Math.max(1, size * 0.022);
+  pen.lineCap = "butt";
+  pen.beginPath();
+  for (const offset of [-1, 0, 1]) {
+    const at = (offset * size * 0.2) / 3;
+    pen.moveTo(-gap, at);
+    pen.lineTo(isWhole ? gap : -gap * 0.45, at);
+    if (isWhole) continue;
+    pen.moveTo(gap * 0.45, at);
+    pen.lineTo(gap, at);
+  }
+  pen.stroke();
+  if (isWhole) return;
+  // Seen from afar, with a rim that parts it from the tiles.
+  const far = Math.max(6, size * 0.1);
+  const [x, y] = state === "cut" ? [far, far] : [gap * 0.45, far * 1.2];
+  pen.lineCap = "round";
+  for (const [colour, wide] of /** @type {[string, number][]} */ ([["--raised", 0.09], [TOKENS[state], 0.045]])) {
+    pen.strokeStyle = token(colour);
+    pen.lineWidth = Math.max(50 * wide, size * wide);
+    pen.beginPath();
+    for (const way of [-1, 1]) {
+      pen.moveTo(x * way, -y);
+      pen.lineTo(state === "cut" ? -x * way : x * way, y);
+    }
+    pen.stroke();
+  }
+}
 
 /** @typedef {{x: number, y: number, dx: number, dy: number, from: number, ms: number, colour: string}} Flight */
 
@@ -63,7 +102,7 @@ export class Cables {
     if (calm.matches || tiles.pace.speed === 0) return;
     for (const pulse of pulses) {
       const tile = tiles.byPort.get(pulse.from);
-      if (!tile?.place || this.lifted.size || this.flights.length >= MOST || tiles.cableAt(tile, pulse.side) === "cut") continue;
+      if (!tile?.place || this.lifted.size || this.flights.length >= MOST || ["cut", "turned"].includes(tiles.cableAt(tile, pulse.side))) continue;
       const [x, y] = view.middle(...tile.place);
       const [down, right] = OFFSETS[pulse.side];
       const baud = down ? COLUMN_BAUD : ROW_BAUD;
@@ -108,8 +147,6 @@ export class Cables {
   drawCables(tiles, view) {
     const pen = this.still;
     const style = getComputedStyle(pen.canvas);
-    const gap = view.size * (0.5 - EDGE);
-    const width = view.size * 0.2;
     for (const tile of tiles.laid()) {
       for (const side of [1, 2]) {
         const other = tiles.neighbour(tile, side);
@@ -120,36 +157,7 @@ export class Cables {
         pen.save();
         pen.translate(x + (right * view.size) / 2, y + (down * view.size) / 2);
         if (down) pen.rotate(Math.PI / 2);
-        const state = tiles.cableAt(tile, side);
-        const isCut = state === "cut";
-        pen.strokeStyle = style.getPropertyValue(TOKENS[state]);
-        pen.lineWidth = Math.max(1, view.size * 0.022);
-        for (const offset of [-1, 0, 1]) {
-          const at = (offset * width) / 3;
-          pen.beginPath();
-          pen.moveTo(-gap, at);
-          pen.lineTo(isCut ? -gap * 0.45 : gap, at);
-          if (isCut) {
-            pen.moveTo(gap * 0.45, at);
-            pen.lineTo(gap, at);
-          }
-          pen.stroke();
-        }
-        if (isCut) {
-          // A cross that is seen from afar, with a rim that parts it from the tiles.
-          const far = Math.max(6, view.size * 0.1);
-          pen.lineCap = "round";
-          for (const [colour, wide] of /** @type {[string, number][]} */ ([["--raised", 0.09], [TOKENS.cut, 0.045]])) {
-            pen.strokeStyle = style.getPropertyValue(colour);
-            pen.lineWidth = Math.max(50 * wide, view.size * wide);
-            pen.beginPath();
-            pen.moveTo(-far, far);
-            pen.lineTo(far, -far);
-            pen.moveTo(-far, -far);
-            pen.lineTo(far, far);
-            pen.stroke();
-          }
-        }
+        drawCable(pen, tiles.cableAt(tile, side), view.size, (name) => style.getPropertyValue(name));
         pen.restore();
       }
     }

@@ -51,9 +51,11 @@ export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** Scrolls to an element, if it is out of sight. @param {Element | null} wanted */
-export function bring(wanted) {
-  wanted?.scrollIntoView({ block: "nearest", behavior: calm.matches ? "auto" : "smooth" });
+/** Scrolls to an element, if it is out of sight. @param {Element | null} wanted @param {ScrollLogicalPosition} block where it comes to lie */
+export function bring(wanted, block = "nearest") {
+  wanted?.scrollIntoView({ block, behavior: calm.matches ? "auto" : "smooth" });
 }
 
+/** Where details lie over the lower part of the window; twin of the style sheet. */
+export const narrow = matchMedia("(max-width: 900px)");
 export const calm = matchMedia("(prefers-reduced-motion: reduce)");

@@ -10,6 +10,9 @@ import { element, icon, svg } from "./dom.js";
 // The brighter one of --housing in styles/base.css.
 const HOUSING = [29, 30, 35];
 
+// More drawings of a file are told apart by their labels, in a list that scrolls.
+const MOST_IN_VIEW = 40;
+
 /** @param {Drawing} drawing @param {string} colour */
 function thumbnail(drawing, colour) {
   const cols = drawing.rows[0].length;
@@ -50,7 +53,11 @@ export class Drawings {
       files.set(file, [...(files.get(file) ?? []), one]);
     }
     const parts = [...files].map(([file, members]) => {
-      const list = element("div", { class: "gallery", role: "group", "aria-label": file });
+      const labels = [...new Set(members.map(({ label }) => label))];
+      const isLong = members.length > MOST_IN_VIEW && labels.length < members.length;
+      /** @type {Map<string, HTMLElement>} */
+      const lists = new Map(labels.map((label) => [label, element("div", { class: "gallery", role: "group", "aria-label": `${file}, ${label}` })]));
+      const whole = element("div", { class: "gallery", role: "group", "aria-label": file });
       for (const one of members) {
         const button = element("button", {
           type: "button", "aria-pressed": "false", "aria-label": `${one.label}, ${one.name}`, title: one.name,
@@ -58,8 +65,9 @@ export class Drawings {
         });
         button.append(thumbnail(one, seenColour(tiles.look(one.label).rgb, HOUSING)));
         this.buttons.set(one.name, button);
-        list.append(button);
+        (isLong ? lists.get(one.label) : whole)?.append(button);
       }
+      const list = isLong ? element("div", { class: "long" }, ...[...lists].flatMap(([label, part]) => [element("h4", {}, label), part])) : whole;
       return element("div", { class: "file" }, element("h3", {}, file.replaceAll("-", " ")), list);
     });
     this.root.replaceChildren(...this.models(tiles), ...(drawings.length ? [heading, help, own, ...parts] : []));
@@ -80,11 +88,21 @@ export class Drawings {
     return [element("label", { class: "model", for: "model" }, element("span", {}, "Model"), select)];
   }
 
+  /** Scrolls a long list to a drawing, and nothing else. @param {HTMLElement} button */
+  reveal(button) {
+    const list = button.closest(".long");
+    if (!list) return;
+    const [{ top, bottom, height }, box] = [button, list].map((one) => one.getBoundingClientRect());
+    if (top < box.top || bottom > box.bottom) list.scrollTop += top - box.top - (box.height - height) / 2;
+  }
+
   /** @param {string} name of the drawing that lies on the board; "" for none of them */
   mark(name) {
     for (const [one, button] of this.buttons) {
       const pressed = String(one === name);
-      if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
+      if (button.getAttribute("aria-pressed") === pressed) continue;
+      button.setAttribute("aria-pressed", pressed);
+      if (one === name) this.reveal(button);
     }
   }
 }

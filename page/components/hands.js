@@ -62,7 +62,7 @@ function cableNear(at, tiles, view) {
  *   move: (port: string, place: Place) => void,
  *   shift: (shift: import("../stream/groups.js").Shift) => void,
  *   cut: (port: string, side: string, on: boolean) => void,
- *   lift: (ports: string[], dx: number, dy: number, place: Place | null) => void,
+ *   lift: (ports: string[], dx: number, dy: number, target: Place | "out" | null) => void,
  *   drop: () => void,
  *   stroke: (points: [number, number][]) => void,
  * }} Deeds
@@ -78,12 +78,14 @@ export class Hands {
     /** @type {Tool} */
     this.tool = "hand";
     /** @type {{id: number, start: [number, number], last: [number, number], tile: Tile | undefined,
-     *   group: string[] | null, crossed: [Tile, number][], moved: boolean, puts: boolean, drawn: Set<string>, points: [number, number][]} | null} */
+     *   group: string[] | null, crossed: [Tile, number][], moved: boolean, puts: boolean | null, drawn: Set<string>, points: [number, number][]} | null} */
     this.grip = null;
     board.addEventListener("pointerdown", (event) => this.down(event));
     board.addEventListener("pointermove", (event) => this.moved(event));
     board.addEventListener("pointerup", (event) => this.up(event));
     board.addEventListener("pointercancel", () => this.letGo());
+    // A tap opens details, which may lie under the finger: no click is to follow that would meet their buttons.
+    board.addEventListener("touchend", (event) => event.cancelable && event.preventDefault());
   }
 
   /** @param {PointerEvent} event @returns {[number, number]} */
@@ -101,10 +103,11 @@ export class Hands {
     const isGroup = this.tool === "group" || (this.tool === "hand" && event.shiftKey);
     const group = isGroup && tile ? clusterOf(this.tiles, tile).map(({ port }) => port) : null;
     this.grip = {
-      id: event.pointerId, start: at, last: at, tile, group, crossed: [], moved: false, puts: !tile, drawn: new Set(), points: [at],
+      id: event.pointerId, start: at, last: at, tile, group, crossed: [], moved: false,
+      puts: tile ? null : true, drawn: new Set(), points: [at],
     };
     this.board.setPointerCapture(event.pointerId);
-    if (this.tool === "pencil") this.draw(place);
+    if (this.tool === "pencil" && !tile) this.draw(place);
   }
 
   /** @param {PointerEvent} event */
@@ -114,7 +117,10 @@ export class Hands {
     const at = this.point(event);
     if (Math.hypot(at[0] - grip.start[0], at[1] - grip.start[1]) > CLICK_PX) grip.moved = true;
     if (this.tool === "pencil") {
-      for (const place of this.placesBetween(grip.last, at)) this.draw(place);
+      for (const place of this.placesBetween(grip.last, at)) {
+        if (grip.puts === null) this.decide(place);
+        if (grip.puts !== null) this.draw(place);
+      }
     } else if (this.tool === "knife" && grip.moved) {
       for (const [tile, side] of cablesCrossed(grip.last, at, this.tiles, this.view)) {
         if (!this.tiles.isCut(tile, side)) this.deeds.cut(tile.port, SIDES[side], true);
@@ -124,8 +130,7 @@ export class Hands {
       grip.crossed.push(...cablesCrossed(grip.last, at, this.tiles, this.view));
       this.stroke(at);
     } else if (this.holds("move", "shift") && grip.tile && grip.moved) {
-      const place = this.isInside(at) ? this.view.placeAt(...at) : null;
-      this.deeds.lift(grip.group ?? [grip.tile.port], at[0] - grip.start[0], at[1] - grip.start[1], place);
+      this.deeds.lift(grip.group ?? [grip.tile.port], at[0] - grip.start[0], at[1] - grip.start[1], this.view.target(at));
     }
     grip.last = at;
   }
@@ -136,15 +141,17 @@ export class Hands {
     if (!grip || event.pointerId !== grip.id) return;
     const at = this.point(event);
     if (this.tool === "hand" || this.tool === "group") {
-      const place = this.view.placeAt(...at);
       if (!grip.moved) {
         if (grip.tile) this.deeds.select(grip.tile.port);
-        else if (this.tool === "hand" && this.tiles.can("put")) this.deeds.put(place);
+        else if (this.tool === "hand" && this.tiles.can("put")) this.deeds.put(this.view.placeAt(...at));
       } else if (grip.tile && this.holds("move", "shift")) {
-        this.letGoAt(this.isInside(at) ? place : null);
+        this.letGoAt(this.view.target(at));
       } else {
         for (const shift of breakApart(this.tiles, grip.crossed)) this.deeds.shift(shift);
       }
+    } else if (this.tool === "pencil" && grip.puts === null) {
+      grip.puts = false; // it has stayed on one tile
+      this.draw(this.view.placeAt(...grip.start));
     } else if (this.tool === "knife" && !grip.moved) {
       const near = cableNear(at, this.tiles, this.view);
       if (near) this.deeds.cut(near[0].port, SIDES[near[1]], !this.tiles.isCut(...near));
@@ -157,11 +164,11 @@ export class Hands {
     return (this.tool === "hand" || this.tool === "group") && this.tiles.can(this.grip?.group ? group : one);
   }
 
-  /** What is held lands. @param {Place | null} place of the tile under the pointer; null: off the board */
+  /** What is held lands; nowhere, it goes back. @param {Place | "out" | null} place of the tile under the pointer */
   letGoAt(place) {
     const { tile, group } = this.grip ?? {};
-    if (!tile?.place) return;
-    if (!place) {
+    if (!tile?.place || !place) return;
+    if (place === "out") {
       for (const port of group ?? [tile.port]) this.deeds.pull(port);
     } else if (!group) {
       if (!this.tiles.at(...place)) this.deeds.move(tile.port, place);
@@ -184,11 +191,14 @@ export class Hands {
     this.deeds.drop();
   }
 
-  /** Whether a point is where tiles may lie. @param {[number, number]} at */
-  isInside(at) {
-    const place = this.view.placeAt(...at);
-    return at[0] >= 0 && at[1] >= 0 && at[0] < this.board.clientWidth && at[1] < this.board.clientHeight &&
-      this.view.places().some(([row, col]) => row === place[0] && col === place[1]);
+  /** A stroke that began on a tile comes to another place: over tiles it rubs them out, else it draws on from there. @param {Place} place */
+  decide(place) {
+    const { grip } = this;
+    if (!grip) return;
+    const first = this.view.placeAt(...grip.start);
+    if (place.join() === first.join()) return;
+    grip.puts = !this.tiles.at(...place);
+    if (!grip.puts) this.draw(first);
   }
 
   /** @param {Place} place */
@@ -197,7 +207,7 @@ export class Hands {
     if (!grip || grip.drawn.has(place.join())) return;
     grip.drawn.add(place.join());
     const tile = this.tiles.at(...place);
-    if (grip.puts && !tile && this.isInside(this.view.middle(...place))) this.deeds.put(place);
+    if (grip.puts && !tile && this.view.isInReach(place)) this.deeds.put(place);
     else if (!grip.puts && tile) this.deeds.pull(tile.port);
   }
 

@@ -2,15 +2,28 @@
 
 import { element } from "./dom.js";
 
+/** Without a mouse, and so most often without a keyboard. */
+const isTouched = matchMedia("(pointer: coarse)").matches;
+const CLICK = isTouched ? "Tap" : "Click";
+const click = isTouched ? "tap" : "click";
+
+/** More that a finger does. @type {[string, string, string?][]} */
+const TOUCH = [
+  ["Tap a slider", "or drag along it: set it", "pace noise"],
+  ["Tap the chart", "go to that time", "seek"],
+  ["Swipe", "beside the board: scroll the page"],
+];
+
 /** What hands do, what comes of it, and the commands that the source needs for it. @type {[string, string, string?][]} */
 const HANDS = [
-  ["Click a tile", "look into it"],
-  ["Drag a tile", "move it; off the board, pull it out", "move"],
-  ["Click an empty place", "put a tile in", "put"],
-  ["Group: drag a tile", "move all that hangs together with it; so does Shift with Hand", "shift"],
+  [`${CLICK} a tile`, "look into it"],
+  ["Drag a tile", "move it; out of the frame, or where it says so, take it out", "move"],
+  [`${CLICK} an empty place`, "put a tile in", "put"],
+  ["Group: drag a tile", `move all that hangs together with it${isTouched ? "" : "; so does Shift with Hand"}`, "shift"],
   ["Group: drag across", "from an empty place over cables: what hangs by these only breaks apart", "shift"],
-  ["Draw: drag", "from an empty place, put tiles in; from a tile, rub out", "put"],
-  ["Knife: drag across", "cut cables; click one to mend it", "cut"],
+  ["Draw: drag", `over empty places, put tiles in; over tiles, rub them out; ${click} does it for one`, "put"],
+  ["Knife: drag across", `cut cables; ${click} one to mend it`, "cut"],
+  ...(isTouched ? TOUCH : []),
 ];
 
 /** Keys, what they do, and the same. @type {[string, string, string?][]} */
@@ -47,7 +60,7 @@ export class Help {
         element("button", { type: "button", class: "plain", "aria-label": "Close", onclick: () => this.dialog.close() }, "×")),
       element("div", { class: "helps" },
         element("section", {}, element("h3", {}, "On the board"), list(HANDS)),
-        element("section", {}, element("h3", {}, "Keys"), list(KEYS))));
+        element("details", { open: !isTouched }, element("summary", {}, "Keys"), list(KEYS))));
     document.body.append(this.dialog);
     top.append(element("button", { type: "button", class: "help", title: "Help (?)", "aria-label": "Help", onclick: () => this.show() }, "?"));
   }

@@ -69,6 +69,7 @@ export class Inspector {
     this.deeds = deeds;
     this.port = "";
     this.shape = "";
+    this.scores = element("section", { "aria-label": "Scores" });
     /** @type {Meter[]} */
     this.meters = [];
     /** @type {HTMLElement[][]} */
@@ -152,14 +153,14 @@ export class Inspector {
       element("thead", {}, element("tr", {}, ...["Side", "Neighbour", "Heard", "Lost", isOurs ? "Cable" : "Arrives"].map((name) => element("th", { scope: "col" }, name)))),
       element("tbody", {}, ...SIDE_NAMES.map((name, side) => element("tr", {},
         element("th", { scope: "row" }, name), ...this.links[side], element("td", {}, isOurs ? this.cables[side] : this.arrives[side])))));
-    const scores = element("ul", { class: "meters scores", "aria-label": "Scores of the classes" }, ...this.meters.slice(hidden).map((meter) => meter.row));
+    this.scores.replaceChildren(element("h3", {}, "What it thinks"), element("ul", { class: "meters scores", "aria-label": "Scores of the classes" }, ...this.meters.slice(hidden).map((meter) => meter.row)));
     const others = element("ul", { class: "meters", "aria-label": "Hidden channels" }, ...this.meters.slice(0, hidden).map((meter) => meter.row));
     this.root.replaceChildren(
       element("header", {}, element("h2", {}, tile.number ? `Tile ${tile.number}` : tile.port), close),
       this.guess,
+      this.scores,
       element("div", { class: "deeds" }, this.pull, this.power, this.freeze, this.reset, this.press, this.blink),
       element("section", { "data-needs": "skew", "aria-label": "Faults", class: "settings" }, this.clock.form, this.turn),
-      element("h3", {}, "What it thinks"), scores,
       element("h3", {}, "Hidden channels"), others,
       element("h3", {}, "Links"), table,
       element("h3", {}, "Counters"), this.facts,

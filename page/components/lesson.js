@@ -3,7 +3,7 @@
 /** @import { Command, Model, Place } from "../stream/source.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { LABEL, STEPS, eight, isReady, preparation } from "../stream/lessons.js";
-import { element, icon, setText } from "./dom.js";
+import { bring, element, icon, narrow, setText } from "./dom.js";
 
 const ICON = "M12 4L2 9l10 5 10-5zM6 11.500V17c3 2.500 9 2.500 12 0v-5.500";
 const SPEED = 0.3;
@@ -14,8 +14,11 @@ const DIGITS = "digits"; // the model for which it was written
  *   send: (command: Command) => void,
  *   open: (cells: Place[], speed: number) => void,
  *   selected: () => string | null,
+ *   close: () => void,
+ *   quiet: () => void,
+ *   tool: (tool: import("./hands.js").Tool) => string,
  *   choose: (model: Model) => void,
- * }} LessonDeeds
+ * }} LessonDeeds `tool` tells the name of one that was not chosen before; "": it was
  */
 
 export class Lesson {
@@ -35,6 +38,7 @@ export class Lesson {
     this.title = element("h3", { tabindex: -1, class: "step-title" });
     this.text = element("p");
     this.task = element("p", { class: "task" });
+    this.tool = element("p", { class: "summary" });
     this.done = element("p", { class: "done", role: "status" });
     this.back = element("button", { type: "button", onclick: () => this.go(this.at - 1) }, "Back");
     this.next = element("button", { type: "button", onclick: () => this.go(this.at + 1) }, "Skip");
@@ -47,7 +51,7 @@ export class Lesson {
       element("header", {}, element("h2", { id: "lesson-title" }, "Lesson"), this.count,
         element("button", { type: "button", class: "round plain", "aria-label": "End the lesson", onclick: () => this.end() }, "×")),
       element("ol", { class: "steps", "aria-hidden": "true" }, ...this.dots),
-      this.title, this.text, this.use, this.task, this.done,
+      this.title, this.text, this.use, this.tool, this.task, this.done,
       element("div", { class: "deeds" }, this.back, this.next),
     );
     top.prepend(element(
@@ -82,15 +86,19 @@ export class Lesson {
     this.use.hidden = !model;
     setText(this.use, model ? `Use ${model.name}` : "");
     setText(this.task, cells.length ? task : "");
+    const tool = cells.length ? this.deeds.tool(STEPS[this.at].tool) : "";
+    setText(this.tool, tool && `The tool is ${tool} now.`);
+    this.deeds.close();
     setText(this.count, `${this.at + 1} of ${STEPS.length}`);
     this.dots.forEach((dot, index) => dot.classList.toggle("on", index <= this.at));
     this.back.disabled = this.at === 0;
     this.show(false);
     const commands = preparation(STEPS[this.at], this.tiles, isNew);
-    this.isOpen = false;
     this.before = this.deeds.selected();
     this.since = { runs: this.tiles.runs + (commands === null || isNew ? 1 : 0), frames: 0, selected: null };
+    this.isOpen = isReady(STEPS[this.at], this.tiles, this.since) && !STEPS[this.at].isDone(this.tiles, this.since); // a hand may be quicker than the tiles
     if (cells.length) {
+      this.deeds.quiet();
       if (commands === null) this.deeds.open(cells, SPEED);
       else for (const command of [...commands, ...this.hurry()]) this.deeds.send(command);
     }
@@ -129,7 +137,10 @@ export class Lesson {
     this.since.selected = this.before === null ? selected : null;
     if (this.isDone || (!this.isOpen && !isReady(STEPS[this.at], this.tiles, this.since))) return;
     const isDone = STEPS[this.at].isDone(this.tiles, this.since);
-    if (isDone && this.isOpen) this.show(true);
+    if (isDone && this.isOpen) {
+      this.show(true);
+      bring(this.done, narrow.matches && selected ? "start" : "nearest"); // of the board below as much as there is room for
+    }
     this.isOpen ||= !isDone;
   }
 

@@ -1,11 +1,12 @@
 // The board as a picture: the same look as on the page, drawn at one size.
 
 /** @import { Lens } from "../stream/lens.js" */
+/** @import { LaidTile } from "../stream/tile.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { OFFSETS, SIDES } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
 import { inkOn, seenThrough, shadeOf } from "../stream/lens.js";
-import { TOKENS } from "./cables.js";
+import { drawCable } from "./cables.js";
 import { LAMPS, SEGMENTS } from "./tile.js";
 
 const TILE = 120; // pixels of a tile's place
@@ -74,20 +75,11 @@ function drawCables(pen, tiles, tile, token) {
   for (const side of [1, 2]) {
     if (!tiles.neighbour(tile, side)) continue;
     const [down, right] = OFFSETS[side];
-    const state = tiles.cableAt(tile, side);
-    const isCut = state === "cut";
-    pen.strokeStyle = token(TOKENS[state]);
-    pen.lineWidth = 2;
-    for (const aside of [-6, 0, 6]) {
-      const [x, y] = [(right * TILE) / 2 + down * aside, (down * TILE) / 2 + right * aside];
-      const half = TILE * EDGE;
-      for (const way of [-1, 1]) {
-        pen.beginPath();
-        pen.moveTo(x + right * way * half, y + down * way * half);
-        pen.lineTo(x + right * way * half * (isCut ? 0.5 : 0), y + down * way * half * (isCut ? 0.5 : 0));
-        pen.stroke();
-      }
-    }
+    pen.save();
+    pen.translate((right * TILE) / 2, (down * TILE) / 2);
+    if (down) pen.rotate(Math.PI / 2);
+    drawCable(pen, tiles.cableAt(tile, side), TILE, token);
+    pen.restore();
   }
 }
 
@@ -124,16 +116,22 @@ export function paintBoard(canvas, tiles, { words, lens, box, size = TILE }) {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.fillStyle = token("--raised");
   pen.fillRect(0, 0, width, height);
-  for (const tile of laid) {
-    pen.save();
-    pen.translate((width - cols * TILE) / 2 + (tile.place[1] - left + 0.5) * TILE, MARGIN + (tile.place[0] - top + 0.5) * TILE);
-    drawCables(pen, tiles, tile, token);
+  /** Draws something at the middle of each tile's place. @param {(tile: LaidTile) => void} draw */
+  const atEach = (draw) => {
+    for (const tile of laid) {
+      pen.save();
+      pen.translate((width - cols * TILE) / 2 + (tile.place[1] - left + 0.5) * TILE, MARGIN + (tile.place[0] - top + 0.5) * TILE);
+      draw(tile);
+      pen.restore();
+    }
+  };
+  atEach((tile) => {
     if (tile.turned) pen.rotate(Math.PI / 2);
     pen.translate((EDGE - 0.5) * TILE, (EDGE - 0.5) * TILE);
     pen.scale((TILE * (1 - 2 * EDGE)) / 100, (TILE * (1 - 2 * EDGE)) / 100);
     drawTile(pen, tile, token, lens);
-    pen.restore();
-  }
+  });
+  atEach((tile) => drawCables(pen, tiles, tile, token)); // over the tiles, as on the page
   pen.fillStyle = token("--ink");
   pen.font = `600 22px ${token("--font")}`;
   pen.textAlign = "center";

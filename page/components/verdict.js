@@ -2,10 +2,12 @@
 
 /** @import { Tiles } from "../stream/tiles.js" */
 import { known } from "../stream/drawing.js";
+import { mindsOf } from "../stream/groups.js";
 import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
 const SETTLED_MS = 1200;
+const FEW = 3; // groups that are told one by one
 const LONG = 24; // characters; more have to be smaller, so that they stand in one line
 
 /** @param {string} label */
@@ -38,7 +40,15 @@ export function verdictOn(tiles) {
     const who = total === 1 ? "One tile shows" : `All ${total} tiles show`;
     const drawn = known(laid.map((tile) => tile.place), tiles.drawings);
     const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
-    return { text: `${who} ${named(label)}${but}${away}`, label, agreed: true };
+    const off = tiles.kind === "watched" ? 0 : laid.filter((tile) => !tile.powered).length;
+    const without = off ? `, ${off} ${off === 1 ? "has" : "have"} no power` : "";
+    return { text: `${who} ${named(label)}${but}${without}${away}`, label, agreed: true };
+  }
+  const groups = mindsOf(tiles);
+  if (groups.length) {
+    const each = groups.map(([one, ...others]) => `${others.length + 1} show${others.length ? "" : "s"} ${named(one.label)}`);
+    const told = groups.length > FEW ? "each of one mind" : each.join(", ");
+    return { text: `${groups.length} groups: ${told}${away}`, label, agreed: true };
   }
   const waiting = dark ? `, ${dark} still ${dark === 1 ? "boots" : "boot"}` : "";
   return { text: `${most} of ${total} show ${named(label)}${waiting}${away}`, label, agreed: false };

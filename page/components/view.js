@@ -2,10 +2,12 @@
 
 /** @import { Place } from "../stream/source.js" */
 
-// Around the tiles: room to put one, which is seen whole but for a hair of its edge.
-const MARGIN = 0.95;
-const HAIR = 0.1;
-const MARGIN_PX = 36; // and for a line of text
+// Around the tiles: room to put one, which is seen whole.
+const MARGIN = 1;
+const HAIR = 0.02;
+export const MARGIN_PX = 36; // and for a line of text
+// Where tiles are dropped to be taken out: beside the places, where words have room, else below them.
+const OUTLET = { narrowest: 108, widest: 220, lowest: 44, highest: 72, gap: 8 };
 const LARGEST = 132;
 const SMALLEST = 26;
 // In view where no tile lies: room for a digit.
@@ -50,9 +52,7 @@ export class View {
 
   /** Whether places are in reach, and the box is as it was. @param {Place[]} places @param {number} width @param {number} height */
   shows(places, width, height) {
-    const [[top, left], [bottom, right]] = this.reach();
-    return width === this.width && height === this.height &&
-      places.every(([row, col]) => row >= top && row <= bottom && col >= left && col <= right);
+    return width === this.width && height === this.height && places.every((place) => this.isInReach(place));
   }
 
   /** Opposite corners of the places in reach: the tiles' box and one more all around, or as many as there is room for. @returns {[Place, Place]} */
@@ -62,6 +62,34 @@ export class View {
     const [above, below] = room(this.y, this.height - this.y - this.rows * this.size);
     const [before, after] = room(this.x, this.width - this.x - this.cols * this.size);
     return [[this.top - above, this.left - before], [this.top + this.rows - 1 + below, this.left + this.cols - 1 + after]];
+  }
+
+  /** The box of pixels where a tile is dropped to be taken out, in the board. */
+  outlet() {
+    const { narrowest, widest, lowest, highest, gap } = OUTLET;
+    const beside = this.width - this.x - (this.cols + 1) * this.size - 2 * gap;
+    const below = this.height - this.y - (this.rows + 1) * this.size - 2 * gap;
+    if (beside >= narrowest) {
+      const width = Math.min(beside, widest);
+      return { left: this.width - gap - width, top: gap, width, height: this.height - 2 * gap };
+    }
+    const height = Math.min(Math.max(below, lowest), highest);
+    return { left: gap, top: this.height - gap - height, width: this.width - 2 * gap, height };
+  }
+
+  /** Where a tile would be dropped at a point: at a place, out of the board, or nowhere, null. @param {[number, number]} at @returns {Place | "out" | null} */
+  target([x, y]) {
+    const { left, top, width, height } = this.outlet();
+    if (x < 0 || y < 0 || x >= this.width || y >= this.height) return "out";
+    if (x >= left && x < left + width && y >= top && y < top + height) return "out";
+    const place = this.placeAt(x, y);
+    return this.isInReach(place) ? place : null;
+  }
+
+  /** @param {Place} place */
+  isInReach([row, col]) {
+    const [[top, left], [bottom, right]] = this.reach();
+    return row >= top && row <= bottom && col >= left && col <= right;
   }
 
   /** Opposite corners of what was fitted last. @returns {Place[]} */

@@ -23,6 +23,21 @@ export function rowsOf(cells) {
   return rows.map((row) => row.join(""));
 }
 
+/**
+ * The last place without which a drawing is another one, with another label; none where there is none.
+ * @param {Place[]} cells @param {Drawing[]} drawings
+ */
+export function telling(cells, drawings) {
+  if (cells.length < 2) return undefined;
+  const labels = new Map(drawings.map(({ rows, label }) => [rowsOf(cellsOf(rows)).join(), label]));
+  const label = labels.get(rowsOf(cells).join());
+  if (label === undefined) return undefined;
+  return cells.findLast((_, at) => {
+    const other = labels.get(rowsOf(cells.filter((_one, index) => index !== at)).join());
+    return other !== undefined && other !== label;
+  });
+}
+
 /** The offered drawing with these places. @param {Place[]} cells @param {Drawing[]} drawings */
 export function known(cells, drawings) {
   if (!cells.length) return undefined;

@@ -23,6 +23,29 @@ function reached(tile, tiles, isJoined) {
 /** The tiles that hang together with one by whole cables, itself included. @param {Tiles} tiles @param {Tile} tile */
 export const clusterOf = (tiles, tile) => reached(tile, tiles, (one, side) => !tiles.isCut(one, side));
 
+/** Tiles with power that hear each other, group by group, the largest first. @param {Tiles} tiles @returns {LaidTile[][]} */
+function clusters(tiles) {
+  /** @type {LaidTile[][]} */
+  const found = [];
+  const seen = new Set();
+  for (const tile of tiles.laid()) {
+    if (!tile.powered || seen.has(tile)) continue;
+    const group = reached(tile, tiles, (one, side) =>
+      ["whole", "failing"].includes(tiles.cableAt(one, side)) && tiles.neighbour(one, side)?.powered === true);
+    for (const one of group) seen.add(one);
+    found.push(group);
+  }
+  return found.sort((one, other) => other.length - one.length);
+}
+
+/** Those of several groups where each shows the same, and not nothing; else none. @param {Tiles} tiles */
+export function mindsOf(tiles) {
+  const found = clusters(tiles);
+  /** @param {LaidTile[]} group */
+  const isOfOneMind = (group) => tiles.shown(group[0]) !== "" && new Set(group.map((tile) => tiles.shown(tile))).size === 1;
+  return found.length > 1 && found.every(isOfOneMind) ? found : [];
+}
+
 /** Whether tiles can move so far: nobody lies there, and the board does not end. @param {Tiles} tiles @param {Shift} shift */
 export function isFree(tiles, { ports, rows, cols }) {
   return ports.every((port) => {

@@ -1,10 +1,9 @@
 // Eight steps that teach the automaton by doing. Each has one thing to do, and the stream tells when it is done.
 
 /** @import { Command, Place } from "./source.js" */
-/** @import { LaidTile } from "./tile.js" */
 /** @import { Tiles } from "./tiles.js" */
 import { cellsOf, known } from "./drawing.js";
-import { SIDES } from "./source.js";
+import { mindsOf } from "./groups.js";
 
 /**
  * What has happened since a step began.
@@ -12,7 +11,7 @@ import { SIDES } from "./source.js";
  *
  * How a step finds the board: whole (an 8 whose tiles all run), as it is, or some cells of it.
  * @typedef {{title: string, text: string, task: string, done: string, board: "whole" | "as it is" | "without one",
- *   isDone: (tiles: Tiles, since: Since) => boolean}} Step
+ *   tool: import("../components/hands.js").Tool, isDone: (tiles: Tiles, since: Since) => boolean}} Step
  * A step is done only after it was not done: what was so before it began is no deed.
  */
 
@@ -28,29 +27,6 @@ function agreement(tiles) {
   return total > 0 && counts.size === 1 ? [...counts.keys()][0] : "";
 }
 
-/** Tiles that are joined by whole cables. @param {Tiles} tiles @returns {LaidTile[][]} */
-export function groups(tiles) {
-  const waiting = new Map(tiles.laid().map((tile) => [tile.port, tile]));
-  const found = [];
-  for (const first of waiting.values()) {
-    const group = [first];
-    waiting.delete(first.port);
-    for (const tile of group) {
-      for (let side = 0; side < SIDES.length; side++) {
-        const other = waiting.get(tiles.neighbour(tile, side)?.port ?? "");
-        if (!other || tiles.isCut(tile, side)) continue;
-        waiting.delete(other.port);
-        group.push(other);
-      }
-    }
-    found.push(group);
-  }
-  return found;
-}
-
-/** @param {LaidTile[]} group */
-const isOfOneMind = (group) => group[0].label !== "" && group.every(({ label }) => label === group[0].label);
-
 /** @type {Step[]} */
 export const STEPS = [
   {
@@ -59,6 +35,7 @@ export const STEPS = [
     task: "Look into a tile: click it, or press Enter on it.",
     done: "These bars are all it has: a score for each answer, and hidden numbers that it uses to think.",
     board: "whole",
+    tool: "hand",
     isDone: (_, { selected }) => selected !== null,
   },
   {
@@ -67,6 +44,7 @@ export const STEPS = [
     task: "Start over (R), and watch until all agree.",
     done: "Nobody was in charge. Below you see who thought what, and a dot for every change of mind.",
     board: "as it is",
+    tool: "hand",
     isDone: (tiles, { runs }) => tiles.runs > runs && agreement(tiles) !== "",
   },
   {
@@ -75,14 +53,16 @@ export const STEPS = [
     task: "Make time 100 times slower with the slider Speed, and watch the messages.",
     done: "A message says nothing of shapes. It is the sender's numbers, one byte each.",
     board: "as it is",
+    tool: "hand",
     isDone: (tiles, { frames }) => tiles.pace.speed > 0 && tiles.pace.speed <= SLOW && frames >= FRAMES,
   },
   {
     title: "Agreement travels",
     text: "A tile far away cannot see a change, but its neighbours hear of it from theirs. So what one learns goes from tile to tile.",
-    task: "Take out tile 11, the left one of the fourth row: drag it off the board, or press Delete on it.",
+    task: "Take out tile 11, the left one of the fourth row: drag it out of the frame, or press Delete on it.",
     done: "An 8 without that tile is a 9, and all found out, also those at the other end.",
     board: "whole",
+    tool: "hand",
     isDone: (tiles) => tiles.laid().length < 16 && ![LABEL, "", "-"].includes(agreement(tiles)),
   },
   {
@@ -91,6 +71,7 @@ export const STEPS = [
     task: "Put the tile in again: click the empty place, or press Enter on it.",
     done: "The newcomer and all others show an 8. Nobody told them: together they see it.",
     board: "without one",
+    tool: "hand",
     isDone: (tiles) => tiles.laid().length === 16 && agreement(tiles) === LABEL,
   },
   {
@@ -99,6 +80,7 @@ export const STEPS = [
     task: "Look into any tile, and choose Power off.",
     done: "The rest agree on what is left. It may be another digit, if that looks more like it.",
     board: "whole",
+    tool: "hand",
     isDone: (tiles) => tiles.laid().some((tile) => !tile.powered && tile.modelId !== "") && // it had power
        agreement(tiles) !== "",
   },
@@ -108,10 +90,8 @@ export const STEPS = [
     task: "With the knife (K), cut the 8 into two groups: a stroke across two cables, below the middle row. By keyboard: Shift and an arrow key.",
     done: "Each group agrees with itself. They may disagree with each other, and cannot know it.",
     board: "whole",
-    isDone: (tiles) => {
-      const found = groups(tiles);
-      return found.length > 1 && found.every(isOfOneMind);
-    },
+    tool: "knife",
+    isDone: (tiles) => mindsOf(tiles).length > 1,
   },
   {
     title: "What is no digit",
@@ -119,6 +99,7 @@ export const STEPS = [
     task: "Draw (D) something that is no digit, until all show a dash.",
     done: "That is all. Everything you saw was the firmware of real tiles, and you can build them.",
     board: "whole",
+    tool: "pencil",
     isDone: (tiles) => agreement(tiles) === "-",
   },
 ];

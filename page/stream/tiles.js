@@ -282,12 +282,13 @@ export class Tiles {
   }
 
   /**
-   * How the cable at a side of a tile is; at a turned tile it is of no use. Real tiles do not tell that it is cut, but that they hear nobody.
+   * How the cable at a side of a tile is; at a turned tile it joins nothing. Real tiles do not tell that it is cut, but that they hear nobody.
    * @param {Tile} tile @param {number} side
-   * @returns {"whole" | "failing" | "cut"}
+   * @returns {"whole" | "failing" | "cut" | "turned"}
    */
   cableAt(tile, side) {
-    if (this.isCut(tile, side) || tile.turned || this.neighbour(tile, side)?.turned) return "cut";
+    if (this.isCut(tile, side)) return "cut";
+    if (tile.turned || this.neighbour(tile, side)?.turned) return "turned";
     const marks = [tile.health[SIDES[side]], this.neighbour(tile, side)?.health[SIDES[(side + 2) % 4]]].map((one) => one?.[0]);
     if (marks.includes("dead") || marks.includes("foreign")) return "cut";
     return marks.includes("failing") ? "failing" : "whole";

@@ -108,7 +108,7 @@ def test_the_keys_are_listed(browser: Browser, server: PageServer, size: str, sc
         page.goto(server.url + PAUSED)
         page.get_by_role("button", name="Go on").wait_for()
         page.keyboard.press("?")
-        page.locator("#keys kbd", has_text="Ctrl Z").wait_for()
+        page.locator("#keys kbd", has_text={"laptop": "Ctrl Z", "phone": "Tap a tile"}[size]).wait_for()
         assert Axe().run(page).violations_count == 0
         page.keyboard.press("Escape")
         page.locator("#keys").wait_for(state="hidden")
@@ -122,6 +122,7 @@ def test_the_last_deed_is_taken_back_or_there_is_none(paused: Visit) -> None:
     page.keyboard.press("Control+z")
     page.locator("#notice", has_text="nothing to take back").wait_for()
     paused.pull("tile-11")
+    assert page.locator("#notice").is_hidden()  # somebody has gone on
     paused.wait_for_verdict("All 15 tiles show 8")
     page.keyboard.press("Control+z")
     page.locator("#notice", has_text="Taken back: tile 11 pulled out.").wait_for()
@@ -139,7 +140,9 @@ def test_the_last_deed_is_taken_back_or_there_is_none(paused: Visit) -> None:
 
 def test_what_draw_does_is_said_until_both_were_done(paused: Visit) -> None:
     page = paused.page
-    hint = page.locator("#hint", has_text="Start on an empty place to put tiles in, on a tile to rub out")
+    hint = page.locator(
+        "#hint", has_text="Drag over empty places to put tiles in, over tiles to rub them out"
+    )
     page.get_by_role("button", name="Draw", exact=True).click()
     hint.wait_for()
     place = paused.middle(".spot[data-place='1,1']")

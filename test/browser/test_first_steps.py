@@ -28,7 +28,7 @@ def test_few_requests_come_before_the_first_tile(visit: Visit, server: PageServe
 def test_each_tool_says_what_it_does_until_it_was_used(visit: Visit, server: PageServer) -> None:
     visit.page.goto(f"{server.url}?speed=1&spread=0.1")
     hint = visit.page.locator("#hint")
-    hint.get_by_text("Drag a tile off the board").wait_for()
+    hint.get_by_text("Drag tile 11 out of this frame").wait_for()
     visit.wait_for_verdict("All 16 tiles show 8")
     assert Axe().run(visit.page).violations_count == 0
     visit.pull("tile-11")

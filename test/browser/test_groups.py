@@ -76,10 +76,10 @@ def test_where_others_lie_a_cluster_does_not_go(two_bars: Visit) -> None:
     page.mouse.move(*two_bars.middle("[data-port=tile-01]"))
     page.mouse.down()
     page.mouse.move(*two_bars.middle(".spot[data-place='1,0']"), steps=4)
-    page.locator("#box", has_text="Drag them off the board").wait_for()
+    page.locator("#box", has_text="Drop them here to take them out").wait_for()
     assert page.locator(".spot.aim").count() == 3
     page.mouse.move(*two_bars.middle("[data-port=tile-05]"), steps=4)
-    page.locator("#box", has_text="There is no room here").wait_for()
+    page.locator("#box", has_text="No room there").wait_for()
     page.mouse.up()
     page.locator("#box").wait_for(state="hidden")
     assert places(page) == before

@@ -21,8 +21,10 @@ def test_the_eight_steps_are_done_by_hand(visit: Visit, server: PageServer) -> N
     page = visit.page
     page.goto(f"{server.url}?speed=0.3&spread=0.1")
     visit.wait_for_verdict("All 16 tiles show 8")
+    page.get_by_role("button", name="Draw", exact=True).click()
     page.get_by_role("button", name="Lesson").click()
     lesson = page.locator("#lesson")
+    lesson.get_by_text("The tool is Hand now").wait_for()
     assert lesson.locator(".done").inner_text() == ""
     page.locator("[data-port=tile-06]").click()
     done(visit, 1, "These bars are all it has")
@@ -39,13 +41,11 @@ def test_the_eight_steps_are_done_by_hand(visit: Visit, server: PageServer) -> N
     page.locator("#inspector").get_by_role("button", name="Power off").click()
     done(visit, 6, "The rest agree on what is left")
     visit.wait_for_verdict("All 16 tiles show 8")  # each step begins with a board that is whole
-    page.get_by_role("button", name="Knife").click()
     (left, upper), (right, _) = visit.middle("[data-port=tile-07]"), visit.middle("[data-port=tile-10]")
     cable = (upper + visit.middle("[data-port=tile-11]")[1]) / 2
     visit.drag((left - 60, cable), (right + 60, cable))
     done(visit, 7, "Each group agrees with itself")
     visit.wait_for_verdict("All 16 tiles show 8")
-    page.get_by_role("button", name="Draw", exact=True).click()
     for first, last in (("05", "13"), ("06", "16"), ("08", "09"), ("14", "15")):  # a T is left, and drawn
         visit.drag(visit.middle(f"[data-port=tile-{first}]"), visit.middle(f"[data-port=tile-{last}]"))
     visit.drag(visit.middle(".spot[data-place='1,1']"), visit.middle(".spot[data-place='2,1']"))
@@ -140,6 +140,7 @@ LETTERS = """async () => {
   const tell = (drawings) => tiles.take([{ ...stream, drawings }]);
   const lesson = new Lesson(root, top, tiles, {
     send: ({ do: name }) => done.push(name), open: () => done.push("open"), selected: () => null,
+    close: () => {}, quiet: () => {}, tool: () => "",
     choose: ({ name }) => done.push(`choose ${name}`),
   });
   tell([]);

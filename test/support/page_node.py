@@ -28,11 +28,13 @@ class PageNode:
 
         Args:
             folder: an empty one; it gets the modules.
-            script: of JavaScript; a module of the page is `./stream/NAME.js`.
+            script: of JavaScript; a module of the page is `./stream/NAME.js` or
+                `./components/NAME.js`; there is no document.
         """
         if shutil.which("node") is None:
             pytest.skip("node is not installed; run `make test-web`")
-        shutil.copytree(paths.PAGE / "stream", folder / "stream")
+        for part in ("stream", "components"):
+            shutil.copytree(paths.PAGE / part, folder / part)
         (folder / "package.json").write_text('{"type": "module"}')
         (folder / "main.js").write_text(script + LOOP)
         self._process = subprocess.Popen(
