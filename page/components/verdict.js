@@ -46,7 +46,7 @@ export function verdictOn(tiles) {
   }
   const groups = mindsOf(tiles);
   if (groups.length) {
-    const each = groups.map(([one, ...others]) => `${others.length + 1} show${others.length ? "" : "s"} ${named(one.label)}`);
+    const each = groups.map(([one, ...others]) => `${others.length + 1} show${others.length ? "" : "s"} ${named(tiles.shown(one))}`);
     const told = groups.length > FEW ? "each of one mind" : each.join(", ");
     return { text: `${groups.length} groups: ${told}${away}`, label, agreed: true };
   }
