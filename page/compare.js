@@ -3,6 +3,7 @@
 /** @import { Here, Now, Wish } from "./components/framed.js" */
 import { SPEEDS, speedWords } from "./components/bar.js";
 import { byId, element, setText } from "./components/dom.js";
+import { deliberate } from "./components/slider.js";
 import { Timeline } from "./components/timeline.js";
 import { DEFAULT_SPEED } from "./stream/address.js";
 import { differenceWords, resultWords } from "./stream/comparison.js";
@@ -117,6 +118,7 @@ class Run {
       ["drawing", drawing || this.shape.value, this.query.get("draw") ? OWN : this.shape.value],
       ["lost bytes", String(lossPercent), lossPercent ? `${lossPercent}\u00a0%` : "none"],
       ["seed", this.seed.value, this.seed.value],
+      ["time within which tiles are switched on", this.query.get("spread") ?? "", this.query.get("spread") ? `${this.query.get("spread")} s` : "as usual"],
       ["other faults", others, others || "none"],
     ];
   }
@@ -222,6 +224,7 @@ const slider = element("input", {
   type: "range", min: 0, max: SPEEDS.length - 1, step: 1, "aria-label": "Speed of both",
   oninput: () => pace(SPEEDS[Number(slider.value)], paused),
 });
+deliberate(slider);
 const words = element("output");
 
 /** Shows what is asked of both. */
@@ -245,7 +248,7 @@ function update() {
 /** @param {Wish} wish of a hand in one of the frames */
 function obey(wish) {
   if (wish.restart) startOver();
-  if (wish.pace) pace(wish.pace.speed, wish.pace.paused);
+  if (wish.pace) pace(Number(wish.pace.speed), Boolean(wish.pace.paused));
   if (wish.step) step();
   if (wish.seek !== undefined) seek(wish.seek);
 }
@@ -263,7 +266,7 @@ byId("runs").append(...runs.map(({ root }) => root));
 note();
 show();
 
-/** The same keys as on the page of one run. @type {Record<string, () => void>} */
+/** The keys of time, as on the page of one run. @type {Record<string, () => void>} */
 const KEYS = {
   p: () => pace(speed, !paused),
   r: () => startOver(),
@@ -278,7 +281,7 @@ addEventListener("keydown", (event) => {
 });
 
 addEventListener("message", ({ origin, source, data }) => {
-  if (origin !== location.origin || typeof data?.tilenca !== "object") return;
+  if (origin !== location.origin || typeof data?.tilenca !== "object" || !data.tilenca) return;
   const run = runs.find(({ frame }) => frame.contentWindow === source);
   const { here, now, wish } = data.tilenca;
   if (!run) return;

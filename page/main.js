@@ -25,7 +25,7 @@ import { Timeline } from "./components/timeline.js";
 import { UsbPanel } from "./components/usb.js";
 import { Verdict } from "./components/verdict.js";
 import { readAddress } from "./stream/address.js";
-import { deedMoments, isDeed } from "./stream/deeds.js";
+import { deedMoments } from "./stream/deeds.js";
 import { cellsOf } from "./stream/drawing.js";
 import { openEmulator } from "./stream/emulator.js";
 import { Recorder } from "./stream/recorder.js";
@@ -53,23 +53,22 @@ function send(command) {
     notice.say(refusal(tiles));
     return;
   }
-  if (isDeed(command)) notice.pass();
   left.note(command);
   run.note(command);
   hint.note(command.do);
   source.send(command);
 }
 
-/** What takes the last deed back, until it is sent; in a comparison it goes through the page around. @type {{seconds: number, goesOn: boolean} | null} */
+/** What takes the last deed back, until it is sent; in a comparison it goes through the page around. @type {{seconds: number, goesOn: boolean, words: string} | null} */
 let takenBack = null;
 
 /** @param {number} seconds */
 function seek(seconds) {
-  const isUndo = takenBack?.seconds === seconds;
-  const goesOn = isUndo && takenBack?.goesOn;
+  const undone = takenBack?.seconds === seconds ? takenBack : null;
   takenBack = null;
-  send({ do: "seek", seconds, ...(isUndo && { forget: true }) });
-  if (goesOn) deeds.pace(tiles.pace.speed, false);
+  send({ do: "seek", seconds, ...(undone && { forget: true }) });
+  if (undone?.goesOn) deeds.pace(tiles.pace.speed, false);
+  if (undone) notice.say(`Taken back: ${undone.words}.`);
 }
 
 const deeds = {
@@ -140,9 +139,8 @@ const deeds = {
     } else if (!last) {
       notice.say("There is nothing to take back.");
     } else {
-      takenBack = { seconds: last.time - MOMENT_S, goesOn: !tiles.pace.paused };
+      takenBack = { seconds: last.time - MOMENT_S, goesOn: !tiles.pace.paused, words: last.words };
       timeline.go(takenBack.seconds);
-      notice.say(`Taken back: ${last.words}.`);
     }
   },
   /** One update back. */
@@ -342,7 +340,11 @@ function newEars() {
     isOpen: true,
     isLost: false,
     onEvents: (events) => made.isOpen && show(events),
-    onOpen: () => made.isOpen && notice.settle(),
+    onOpen() {
+      if (!made.isOpen) return; // what lies aside and was lost is another run
+      made.isLost = false;
+      notice.settle();
+    },
     onWhole: (events) => recorder.keep(events),
     onLost(seconds, code) {
       made.isLost = true;

@@ -14,7 +14,7 @@ export class Aside {
     this.ears = ears;
     // What the page clears in place is told anew by the jump of `takeUp`.
     this.tiles = { ...tiles, byPort: new Map(), byPlace: new Map(), cut: new Set(), pulses: [] };
-    this.run = { ...run, start: run.start && { ...run.start } };
+    this.run = { ...run, handled: new Set(run.handled), start: run.start && { ...run.start } };
     this.recorder = { ...recorder };
     ears.isOpen = false;
     source.send({ do: "rest", on: true });
@@ -22,8 +22,8 @@ export class Aside {
 
   /** The page is of this run again, which stands where it stood. @param {Tiles} tiles @param {Run} run @param {Recorder} recorder */
   takeUp(tiles, run, recorder) {
-    const version = tiles.version + 1;
-    Object.assign(tiles, this.tiles, { version });
+    const told = { version: tiles.version + 1, jumps: tiles.jumps + 1 }; // never numbers that the page has seen
+    Object.assign(tiles, this.tiles, told);
     Object.assign(run, this.run);
     Object.assign(recorder, this.recorder);
     this.ears.isOpen = true;

@@ -1,4 +1,4 @@
-// The last seconds of a run as a GIF: the recorded events once more, and a picture of the board for each frame.
+// A part of a run as a GIF: the recorded events once more, and a picture of the board for each frame.
 
 /** @import { Lens } from "../stream/lens.js" */
 /** @import { Place, StreamEvent } from "../stream/source.js" */

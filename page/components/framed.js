@@ -42,7 +42,7 @@ export function obeyParent(deeds, go, send) {
     step: () => ask({ step: true }),
   }));
   addEventListener("message", ({ origin, source, data }) => {
-    if (origin !== location.origin || source !== parent || typeof data?.tilenca !== "object") return;
+    if (origin !== location.origin || source !== parent || typeof data?.tilenca !== "object" || !data.tilenca) return;
     const { pace, restart, step, seek } = data.tilenca;
     if (restart) own.restart();
     if (pace) own.pace(Number(pace.speed), Boolean(pace.paused));

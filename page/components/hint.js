@@ -1,6 +1,7 @@
 // What the chosen tool does, on the board itself, until a hand has done it; once for every browser.
 
 /** @import { Tiles } from "../stream/tiles.js" */
+/** @import { Place } from "../stream/source.js" */
 /** @import { Tool } from "./hands.js" */
 import { telling } from "../stream/drawing.js";
 import { setText } from "./dom.js";
@@ -43,8 +44,8 @@ export class Hint {
     this.known = new Set(remembered());
     /** What the pencil has done. @type {Set<string>} */
     this.drawn = new Set();
-    /** The places for which a tile was chosen, and its port. */
-    this.chosen = { places: "", port: "" };
+    /** The places for which a tile was chosen, and its own. @type {{places: string, place: Place | undefined}} */
+    this.chosen = { places: "", place: undefined };
   }
 
   /** @param {Tool} tool */
@@ -79,10 +80,10 @@ export class Hint {
     const { tiles } = this;
     const places = `${tiles.drawings.length} ${[...tiles.byPlace.keys()].join(" ")}`;
     if (places !== this.chosen.places) {
-      const place = telling(tiles.laid().map((tile) => tile.place), tiles.drawings);
-      this.chosen = { places, port: (place && tiles.at(...place)?.port) ?? "" };
+      this.chosen = { places, place: telling(tiles.laid().map((tile) => tile.place), tiles.drawings) };
     }
-    return this.chosen.port;
+    const { place } = this.chosen;
+    return (place && tiles.at(...place)?.port) ?? "";
   }
 
   update() {

@@ -3,7 +3,7 @@
 /** @import { Tile } from "../stream/tile.js" */
 /** @import { Tiles } from "../stream/tiles.js" */
 import { MESSAGE_OFFSET } from "../stream/sentences.js";
-import { SIDES } from "../stream/source.js";
+import { SIDES, named } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
 import { FULL, channelsOf } from "../stream/lens.js";
 import { element, setText } from "./dom.js";
@@ -118,9 +118,8 @@ export class Inspector {
       this.build(tile);
     }
     const label = this.tiles.shown(tile);
-    const look = label === "" ? "nothing" : label === "-" ? "a dash" : label;
     const sure = tile.margin === null || label !== tile.label ? "" : `, ${sureness(tile.margin)}`;
-    setText(this.guess, tile.powered ? `It shows ${look}${sure}` : awayWords(tile));
+    setText(this.guess, tile.powered ? `It shows ${named(label) || "nothing"}${sure}` : awayWords(tile));
     setText(this.power, tile.powered ? "Power off" : "Power on");
     setText(this.freeze, tile.frozen ? "Thaw" : "Freeze");
     this.freeze.title = this.tiles.source === "watched" ? "The tile keeps it, also without power, until Thaw" : HELP.freeze;

@@ -19,6 +19,7 @@ export class Notice {
     this.timer = 0;
     document.addEventListener("close", () => this.home.append(root), true); // of a dialog
     document.addEventListener("scroll", () => this.place(), { passive: true });
+    addEventListener("resize", () => this.place());
     document.addEventListener("pointerdown", ({ target }) => this.root.contains(/** @type {Node} */ (target)) || this.pass(), true);
     document.addEventListener("keydown", ({ key }) => LEADING.includes(key) || this.pass(), true);
   }

@@ -152,7 +152,7 @@ export class Share {
   }
 
   gif() {
-    if (this.recorder.isFull) return this.deeds.say("The recording is too long; it has the beginning only, and no GIF of the last seconds. Restart the run for one.");
+    if (this.recorder.isFull) return this.deeds.say("The recording is too long; it has the beginning only, and no GIF can be made of it. Restart the run for one.");
     const part = this.span();
     if (!part) return this.deeds.say("No tile has changed its mind yet; choose another part for the GIF.");
     const { from, to } = part;

@@ -2,7 +2,7 @@
 
 /** @import { Lens } from "../stream/lens.js" */
 /** @import { Tile } from "../stream/tile.js" */
-import { SIDES } from "../stream/source.js";
+import { SIDES, sideWords } from "../stream/source.js";
 import { cssColour } from "../stream/led.js";
 import { inkOn, seenThrough, shadeOf } from "../stream/lens.js";
 import { element, setText, svg } from "./dom.js";
@@ -11,7 +11,6 @@ import { element, setText, svg } from "./dom.js";
 export const SEGMENTS = [
   "M36 20H64", "M69 25V45", "M69 55V75", "M36 80H64", "M31 55V75", "M31 25V45", "M37 50H63",
 ];
-const SIDE_WORDS = ["north", "east", "south", "west"];
 /** Where the lamps are. */
 export const LAMPS = [[50, 8], [92, 50], [50, 92], [8, 50]];
 
@@ -86,7 +85,7 @@ function spoiltWords({ frozen, turned, skew }) {
 
 /** What a screen reader says of a tile. @param {Tile} tile @param {string} label that it shows @param {string | null} seen what its colour tells */
 function describe(tile, label, seen) {
-  const links = SIDE_WORDS.filter((_, side) => tile.leds[side] === SIDES[side]);
+  const links = [...SIDES].filter((letter, side) => tile.leds[side] === letter).map(sideWords);
   const place = tile.place ? `, row ${tile.place[0] + 1}, column ${tile.place[1] + 1}` : "";
   if (!tile.powered) return `Tile ${tile.number}${place}, ${tile.trouble ? `${tile.trouble}, ${tile.reason}` : "no power"}`;
   const shows = label === "" ? "shows nothing yet" : label === "-" ? "shows a dash" : `shows ${label}`;

@@ -4,6 +4,7 @@
 import { deedMoments } from "../stream/deeds.js";
 import { spanOf } from "./agreement.js";
 import { byId, element, setText } from "./dom.js";
+import { deliberate } from "./slider.js";
 
 const MS = 1000;
 // A source that has not answered by then is asked again.
@@ -25,6 +26,7 @@ export class Timeline {
       oninput: () => this.go(Number(this.slider.value) / MS),
       onkeydown: (/** @type {KeyboardEvent} */ event) => this.key(event),
     });
+    deliberate(this.slider);
     this.words = element("output", { for: "moment", class: "speed-words" });
     this.deed = element("span", { class: "summary", role: "status" });
     this.root.append(this.slider, element("span", { class: "caption", "aria-hidden": "true" }, "Go back"), this.deed, this.words);

@@ -3,15 +3,13 @@
 /** @import { Tiles } from "../stream/tiles.js" */
 import { known } from "../stream/drawing.js";
 import { mindsOf } from "../stream/groups.js";
+import { named } from "../stream/source.js";
 import { byId, setText } from "./dom.js";
 
 // A sentence that stands so long is said aloud.
 const SETTLED_MS = 1200;
 const FEW = 3; // groups that are told one by one
 const LONG = 24; // characters; more have to be smaller, so that they stand in one line
-
-/** @param {string} label */
-const named = (label) => (label === "-" ? "a dash" : label);
 
 /**
  * The sentence, and the label that most tiles show.
@@ -36,22 +34,22 @@ export function verdictOn(tiles) {
   }
   if (!ranked.length) return { text: `The tiles boot${away}`, label: "", agreed: false };
   const [label, most] = ranked[0];
+  const off = tiles.kind === "watched" ? 0 : laid.filter((tile) => !tile.powered).length;
+  const without = off ? `, ${off} ${off === 1 ? "has" : "have"} no power` : "";
   if (most === total) {
     const who = total === 1 ? "One tile shows" : `All ${total} tiles show`;
     const drawn = known(laid.map((tile) => tile.place), tiles.drawings);
     const but = drawn && drawn.label !== label ? `, and it was drawn as ${drawn.label}` : "";
-    const off = tiles.kind === "watched" ? 0 : laid.filter((tile) => !tile.powered).length;
-    const without = off ? `, ${off} ${off === 1 ? "has" : "have"} no power` : "";
     return { text: `${who} ${named(label)}${but}${without}${away}`, label, agreed: true };
   }
   const groups = mindsOf(tiles);
   if (groups.length) {
     const each = groups.map(([one, ...others]) => `${others.length + 1} show${others.length ? "" : "s"} ${named(tiles.shown(one))}`);
     const told = groups.length > FEW ? "each of one mind" : each.join(", ");
-    return { text: `${groups.length} groups: ${told}${away}`, label, agreed: true };
+    return { text: `${groups.length} groups: ${told}${without}${away}`, label, agreed: true };
   }
   const waiting = dark ? `, ${dark} still ${dark === 1 ? "boots" : "boot"}` : "";
-  return { text: `${most} of ${total} show ${named(label)}${waiting}${away}`, label, agreed: false };
+  return { text: `${most} of ${total} show ${named(label)}${waiting}${without}${away}`, label, agreed: false };
 }
 
 export class Verdict {

@@ -1,6 +1,7 @@
 // Two runs in words: in what they differ, and what came of it.
 
 /** @import { Now } from "../components/framed.js" */
+import { named } from "./source.js";
 
 /** What a run begins with: each with a name, what it is, and how that is said. @typedef {[name: string, value: string, words: string][]} Settings */
 
@@ -13,9 +14,6 @@ export function differenceWords(left, right) {
   if (!parts.length) return "Both runs are alike. Change a setting of one of them, or pull out a tile.";
   return `Left and right differ in ${new Intl.ListFormat("en").format(parts)}.`;
 }
-
-/** @param {string} label */
-const named = (label) => (label === "-" ? "a dash" : label);
 
 /** @param {Now} now */
 const agreementWords = ({ since, label }) => (since === null ? "has not agreed yet" : `agreed on ${named(label)} at ${since.toFixed(2)} s`);

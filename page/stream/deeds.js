@@ -2,6 +2,7 @@
 
 /** @import { Command, Place } from "./source.js" */
 import { cellsOf, rowsOf } from "./drawing.js";
+import { sideWords } from "./source.js";
 
 /** @typedef {{time: number, deed: Command}} Deed */
 
@@ -62,17 +63,17 @@ const KINDS = {
 
 /** @param {unknown} port */
 const tileWords = (port) => `tile ${numberOf(port)}`;
-/** @type {Record<string, string>} */
-const SIDE_WORDS = { N: "north", E: "east", S: "south", W: "west" };
+/** @param {unknown} list */
+const lengthOf = (list) => (Array.isArray(list) ? list.length : 0);
 
 /** What each of them is in words, as what has happened. @type {Record<string, (deed: any) => string>} */
 const WORDS = {
   put: () => "a tile put in",
   pull: ({ port }) => `${tileWords(port)} pulled out`,
   move: ({ port }) => `${tileWords(port)} moved`,
-  shift: ({ ports }) => (ports.length === 1 ? `${tileWords(ports[0])} moved` : `${ports.length} tiles moved together`),
-  arrange: ({ cells }) => `another drawing, of ${cells.length} ${cells.length === 1 ? "tile" : "tiles"}`,
-  cut: ({ port, side, on }) => `cable ${on ? "cut" : "mended"} at ${tileWords(port)}, ${SIDE_WORDS[side]}`,
+  shift: ({ ports }) => (lengthOf(ports) === 1 ? `${tileWords(ports[0])} moved` : `${lengthOf(ports)} tiles moved together`),
+  arrange: ({ cells }) => `another drawing, of ${lengthOf(cells)} ${lengthOf(cells) === 1 ? "tile" : "tiles"}`,
+  cut: ({ port, side, on }) => `cable ${on ? "cut" : "mended"} at ${tileWords(port)}, ${sideWords(side)}`,
   power: ({ port, on }) => `${tileWords(port)} switched ${on ? "on" : "off"}`,
   freeze: ({ port, on }) => `${tileWords(port)} ${on ? "frozen" : "thawed"}`,
   turn: ({ port, on }) => `${tileWords(port)} ${on ? "turned" : "turned back"}`,
@@ -85,7 +86,7 @@ const WORDS = {
 };
 
 /** A deed in a few words. @param {Command} deed */
-export const deedWords = (deed) => WORDS[deed.do]?.(deed) ?? deed.do;
+const deedWords = (deed) => (Object.hasOwn(WORDS, deed.do) ? WORDS[deed.do](deed) : deed.do);
 
 const SAME_S = 1e-4; // what was done while time stood is one
 const MOST_WORDS = 2;

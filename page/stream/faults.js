@@ -3,7 +3,7 @@
 /** @import { Command } from "./source.js" */
 /** @import { LaidTile } from "./tile.js" */
 /** @import { Tiles } from "./tiles.js" */
-import { SIDES } from "./source.js";
+import { SIDES, sideWords } from "./source.js";
 
 // KIND[=VALUE]@WHERE[:TIMES]
 const PLACED = /^([^@:]+)@([^:]+)(.*)$/;
@@ -34,7 +34,6 @@ const WORDS = {
   flip: "flipped bits", delay: "a delay (ms)", reset: "a reset", remove: "taken out", adc: "noise at its pins", supply: "a supply (V)",
 };
 /** @type {Record<string, string>} */
-const SIDE_WORDS = { N: "north", E: "east", S: "south", W: "west" };
 
 /**
  * A fault in words, by the place on the board and not by a number, which changes with the tiles before it.
@@ -51,7 +50,7 @@ export function faultWords(fault, laid) {
   };
   const [kind, value] = what.split("=");
   const at = first ? ` at ${place(first)}` : " everywhere";
-  const towards = side ? `, ${SIDE_WORDS[side]}` : second ? ` to ${place(second)}` : "";
+  const towards = side ? `, ${sideWords(side)}` : second ? ` to ${place(second)}` : "";
   return `${WORDS[kind] ?? kind}${value ? ` ${value}` : ""}${at}${towards}${times ? `, ${times.slice(1)} s` : ""}`;
 }
 

@@ -51,7 +51,8 @@ export class History {
   agreedAt(time) {
     /** @type {{since: number | null, label: string}} */
     const found = { since: null, label: "" };
-    for (const { time: from, counts, total } of this.samples.toReversed()) {
+    for (let index = this.samples.length - 1; index >= 0; index--) {
+      const { time: from, counts, total } = this.samples[index];
       if (from > time) continue;
       const [label, count] = [...counts].find(([one]) => one) ?? ["", 0];
       if (!count || count !== total || (found.since !== null && label !== found.label)) break;

@@ -91,7 +91,7 @@ export const STEPS = [
     done: "Each group agrees with itself. They may disagree with each other, and cannot know it.",
     board: "whole",
     tool: "knife",
-    isDone: (tiles) => mindsOf(tiles).length > 1,
+    isDone: (tiles) => tiles.cut.size > 0 && mindsOf(tiles).length > 1,
   },
   {
     title: "What is no digit",

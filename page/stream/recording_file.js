@@ -41,13 +41,18 @@ const isStream = ({ source, of = "", model = "", models = [], looks = [], drawin
 /** @param {any} link */
 const isLink = (link) => Array.isArray(link) && link.length === 2 && isText(link[0]) && (link[1] === null || isIn(link[1], 0, 1));
 
+/** @param {any} value */
+const isPlain = (value) => value === null || typeof value === "boolean" || Number.isFinite(value) || isText(value);
+/** What a deed may be given. @param {any} value */
+const isGiven = (value) => isPlain(value) || isListOf(value, (one) => isPlain(one) || isListOf(one, isPlain));
+
 /** What each subject must be, and which of them are about a tile. @type {Record<string, [Check, boolean]>} */
 const SUBJECTS = {
   stream: [(_, event) => isStream(event), false],
   run: [(run) => isObject(run) && isIn(run.seed, 0, Number.MAX_SAFE_INTEGER) && isIn(run.began ?? 0, 0, 1e12), false],
   jump: [(jump) => isObject(jump) && isIn(jump.from, 0, LONGEST_S), false],
   pace: [(pace) => isObject(pace) && isIn(pace.speed, 0, 1024) && isIn(pace.end ?? 0, 0, LONGEST_S), false],
-  deed: [(deed) => isObject(deed) && isText(deed.do), false],
+  deed: [(deed) => isObject(deed) && isText(deed.do) && Object.values(deed).every(isGiven), false],
   classes: [(looks) => isListOf(looks, isLook), false],
   refused: [isText, false],
   place: [(place) => place === null || (isListOf(place, (one) => isWhole(one, -MOST_PLACE, MOST_PLACE)) && place.length === 2), true],

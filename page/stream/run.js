@@ -78,7 +78,7 @@ export class Run {
   noiseNow() {
     const { tiles } = this;
     const last = tiles.deeds.findLast(({ time, deed }) => time <= tiles.time && deed.do === "noise");
-    return (this.noise = last ? Number(last.deed.loss) : lossOf(this.given));
+    return (this.noise = last ? Number(last.deed.loss) || 0 : lossOf(this.given));
   }
 
   /** Begins what the address asks for. */

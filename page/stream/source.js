@@ -51,5 +51,11 @@ export const WRONG_TOKEN = 1008;
 export const BROKE_OFF = 1011;
 export const TOO_MANY_PAGES = 1013;
 export const SIDES = "NESW";
+/** A label in words. @param {string} label */
+export const named = (label) => (label === "-" ? "a dash" : label);
+
+const SIDE_WORDS = ["north", "east", "south", "west"];
+/** A side in words. @param {string | number} side its letter or number */
+export const sideWords = (side) => SIDE_WORDS[typeof side === "number" ? side : SIDES.indexOf(side)] ?? "";
 /** Rows and columns from a tile to its neighbour on each side. @type {Place[]} */
 export const OFFSETS = [[-1, 0], [0, 1], [1, 0], [0, -1]];

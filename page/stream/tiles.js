@@ -252,7 +252,8 @@ export class Tiles {
     for (const tile of this.byPort.values()) {
       if (!tile.place || !tile.powered) continue;
       total++;
-      counts.set(labelOf(tile), (counts.get(labelOf(tile)) ?? 0) + 1);
+      const label = labelOf(tile);
+      counts.set(label, (counts.get(label) ?? 0) + 1);
     }
     return { counts, total };
   }

@@ -70,6 +70,7 @@ def test_a_long_run_has_its_end_in_view_and_all_of_it_below(visit: Visit, server
     page = visit.page
     page.goto(f"{server.url}?draw=1&speed=0&spread=0&until=12")
     page.get_by_role("button", name="Go on").wait_for()
+    visit.wait_until("parseFloat(document.getElementById('clock').textContent) > 11.9")
     view = page.get_by_label("Time in view")
     assert view.input_value() == "10"
     box = page.locator("canvas#agreement").bounding_box()

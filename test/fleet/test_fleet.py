@@ -194,15 +194,17 @@ def test_the_monitor_draws_the_lab_and_survives_unplug_and_replug(lab: Lab) -> N
     with subprocess.Popen(
         command("monitor"), cwd=lab.folder, env=environment, stdout=inside, stderr=subprocess.PIPE
     ) as monitor:
-        read_until(screen, "opening it has reset the tile")
-        read_until(screen, "20 tiles  20 show")
-        lab.unplug(6)
-        read_until(screen, "1 away")
-        lab.plug(6)
-        read_until(screen, "port open")
-        read_until(screen, "20 tiles  20 show")
-        monitor.send_signal(signal.SIGINT)
-        _, chatter = monitor.communicate(timeout=LIMIT_S)
+        try:
+            read_until(screen, "opening it has reset the tile")
+            read_until(screen, "20 tiles  20 show")
+            lab.unplug(6)
+            read_until(screen, "1 away")
+            lab.plug(6)
+            read_until(screen, "20 tiles  20 show")
+            monitor.send_signal(signal.SIGINT)
+            _, chatter = monitor.communicate(timeout=LIMIT_S)
+        finally:
+            monitor.kill()  # a terminal that nobody reads would hold it for ever
     os.close(inside)
     os.close(screen)
     assert monitor.returncode == 130

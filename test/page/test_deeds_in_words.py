@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ SCRIPT = """
 import { deedMoments, isDeed } from "./stream/deeds.js";
 const answer = (deeds) => [deedMoments(deeds), deeds.every(({ deed }) => isDeed(deed))];
 """
-DEEDS = {
+DEEDS: dict[str, tuple[dict[str, Any], str]] = {
     "put": ({"row": 1, "col": 2}, "a tile put in"),
     "pull": ({"port": "tile-04"}, "tile 4 pulled out"),
     "move": ({"port": "tile-04", "row": 1, "col": 2}, "tile 4 moved"),

@@ -138,7 +138,7 @@ def test_two_groups_that_are_of_one_mind_each_are_told_as_two(page: PageNode) ->
     cut = {"rows": ["###"], "shows": "991", "cut": [[2, "E"]]}
     assert page.ask(["verdict", cut]) == "2 groups: 2 show 9, 1 shows 1"
     dead = {"rows": ["###"], "shows": "9-1", "off": [2]}
-    assert page.ask(["verdict", dead]) == "2 groups: 1 shows 9, 1 shows 1"
+    assert page.ask(["verdict", dead]) == "2 groups: 1 shows 9, 1 shows 1, 1 has no power"
 
 
 def test_a_tile_without_power_is_told_where_the_others_agree(page: PageNode) -> None:

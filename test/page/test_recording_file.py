@@ -19,6 +19,7 @@ from tilenca.page.recording_file import check_recording
 
 READ = """
 import { parseRecording } from "./stream/recording_file.js";
+import { deedMoments } from "./stream/deeds.js";
 import { Tiles } from "./stream/tiles.js";
 function answer(text) {
   let events;
@@ -31,6 +32,7 @@ function answer(text) {
   try {
     tiles.take(events);
     tiles.laid().forEach((tile) => [0, 1, 2, 3].map((side) => tiles.cableAt(tile, side)));
+    deedMoments(tiles.deeds);
   } catch (error) {
     return { broken: error.stack };
   }
@@ -53,6 +55,9 @@ EVENTS: list[dict[str, Any]] = [
     {"time": 0.4, "port": "tile-01", "health": {"trouble": "", "links": {"N": ["good", 0.5]}}},
     {"time": 0.4, "port": "tile-01", "note": "shows 1"},
     {"time": 0.4, "deed": {"do": "put", "row": 1}},
+    {"time": 0.4, "deed": {"do": "arrange", "cells": [[0, 1], [1, 1]]}},
+    {"time": 0.4, "deed": {"do": "shift", "ports": ["tile-01"], "rows": 1, "cols": 0}},
+    {"time": 0.4, "deed": {"do": "noise", "loss": 0.1}},
     {"time": 0.5, "classes": [LOOK]},
     {"time": 0.5, "refused": "no"},
     {"time": 0.5, "pace": {"speed": 1, "end": 0.5}},

@@ -110,6 +110,11 @@ def test_what_cannot_be_filmed_is_told(tmp_path: Path) -> None:
     with pytest.raises(TilencaError, match="no tile says in it what it shows"):
         of_recording(path)
     written(path, [(0.0, tile(1, "7"))])
+    gone = json.dumps(place_event(200, "/dev/ttyACM1", None))
+    path.write_text(f"{path.read_text(encoding='ascii')}{gone}\n", encoding="ascii")
+    with pytest.raises(TilencaError, match="no tile lies on the board at the recording's end"):
+        of_recording(path)
+    written(path, [(0.0, tile(1, "7"))])
     events = [json.loads(line) for line in path.read_text(encoding="ascii").splitlines()]
     path.write_text(
         "".join(json.dumps({**event, "shape": shape}) + "\n" for event in events for shape in "47"),

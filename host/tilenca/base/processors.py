@@ -4,7 +4,7 @@ import os
 
 
 def processors_text() -> str:
-    """The same in words, with those of the machine that this process may not use."""
+    """How many there are, in words, with those of the machine that this process may not use."""
     usable, all_of_them = processors(), os.cpu_count() or 1
     if usable < all_of_them:
         return f"{usable} of {all_of_them} processors"

@@ -132,7 +132,7 @@ def _prepare(args: argparse.Namespace) -> _Run:
         if getattr(args, option) and len(shapes) != 1:
             raise UsageError(f"--{option} needs one shape, got {len(shapes)}; give --shape NAME")
     fits = hello is None or _fits(hello, known and known[0], task)
-    args.trained = None if fits else folder_of(task)
+    args.trained = None if known and fits else folder_of(task)
     if hello is None:
         told = [BOARD_TEST_IMAGE] if is_board_test(image) and not args.serve else []
     else:

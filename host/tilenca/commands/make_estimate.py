@@ -86,7 +86,10 @@ def emulating_s(args: argparse.Namespace, plan: TrainingPlan, pace: Pace) -> flo
 
 
 def _tile_second_s(args: argparse.Namespace) -> float | None:
-    """How long an emulated second of one tile takes, by two that talk; None: there is no firmware yet."""
+    """How long an emulated second of one tile takes, by two that talk; None: there is no firmware yet.
+
+    Tiles that talk cost the most, so the estimate is rather too long: in the bootloader's second they idle.
+    """
     images = paths.model_elf(args.out), paths.firmware_elf()
     image = next((image for image in images if image.exists()), None)
     if image is None:

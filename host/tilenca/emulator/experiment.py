@@ -27,11 +27,8 @@ from tilenca.shapes.file import Shape
 from tilenca.shapes.glyphs import label_of_glyph
 
 SLICE_S = 0.05
-# A tile that takes this much longer than its updates should take will never finish.
-PATIENCE = 1.5
-PATIENCE_S = 3.0
-# The stock bootloader gives way to the program after a second without a byte; see docs/EMULATOR.md.
-BOOTLOADER_S = 1.5
+PATIENCE, PATIENCE_S = 1.5, 3.0  # a tile that takes so much longer, and this, will never finish
+BOOTLOADER_S = 1.5  # the stock bootloader gives way after a second without a byte; see docs/EMULATOR.md
 BYTE_S = 10 / 115200
 STEADY_UPDATES = 10  # tiles that were right for so many updates have agreed
 
@@ -193,13 +190,10 @@ class Emulation:
             if self.array.time_s > limit_s:
                 slowest = min(self._standing(), key=self._updates, default=0)
                 done = self._updates(slowest)
-                unread = (
-                    "" if done else "; a tile that hangs, or whose clock is 4 % off, is not understood on USB"
-                )
-                raise TilencaError(
-                    f"shape '{self.shape.name}': tile {slowest + 1} reported {done} updates in "
-                    f"{limit_s:.1f} s instead of {self.settings.updates}; give --seconds to run on{unread}"
-                )
+                about = f"shape '{self.shape.name}': tile {slowest + 1} reported {done} updates"
+                unread = "" if done else "; one that hangs, or a clock 4 % off, is not heard"
+                limit = f"in {limit_s:.1f} s instead of {self.settings.updates}"
+                raise TilencaError(f"{about} {limit}; give --seconds to run on{unread}")
             left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
             on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))
 

@@ -4,6 +4,7 @@ The twin of `page/stream/recording_file.js`: `test/page/test_recording_file.py` 
 """
 
 import re
+import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -147,13 +148,33 @@ def _is_pace(pace: Any, event: dict[str, Any]) -> bool:
     )
 
 
+def _is_plain(value: object) -> bool:
+    return (
+        value is None
+        or _is_in(value, -sys.float_info.max, sys.float_info.max)
+        or (isinstance(value, bool) or _is_text(value))
+    )
+
+
+def _is_deed(deed: Any, event: dict[str, Any]) -> bool:
+    """Given plain values, lists of them, and lists of such lists."""
+    return (
+        isinstance(deed, dict)
+        and _is_text(deed.get("do"))
+        and all(
+            _is_plain(value) or _is_list_of(value, lambda one: _is_plain(one) or _is_list_of(one, _is_plain))
+            for value in deed.values()
+        )
+    )
+
+
 # What each subject must be, and which of them are about a tile.
 SUBJECTS: dict[str, tuple[Check, bool]] = {
     "stream": (lambda _, event: _is_stream(event), False),
     "run": (_is_run, False),
     "jump": (lambda jump, _: isinstance(jump, dict) and _is_in(jump.get("from"), 0, LONGEST_S), False),
     "pace": (_is_pace, False),
-    "deed": (lambda deed, _: isinstance(deed, dict) and _is_text(deed.get("do")), False),
+    "deed": (_is_deed, False),
     "classes": (lambda looks, _: _is_list_of(looks, _is_look), False),
     "refused": (lambda text, _: _is_text(text), False),
     "place": (_is_place, True),

@@ -219,9 +219,8 @@ def _check_latency(axes: Sequence[Axis]) -> None:
     """Refuses messages that take longer than the shortest period."""
     values = {axis.name: axis.values for axis in axes}
     given = [str(text) for text in values.get("latency", (LATENCY,)) if text != AS_TILES]
-    longest = max(
-        (parse_latency(text)[1] for text in given), default=0.0
-    )  # tiles take what their clocks allow
+    # Without any, messages take what the clocks of tiles allow.
+    longest = max((parse_latency(text)[1] for text in given), default=0.0)
     drift = max(float(ppm) for ppm in values.get("ppm", (0.0,))) / 1e6
     if longest >= 1 - drift:
         raise UsageError(

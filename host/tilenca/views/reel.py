@@ -173,6 +173,8 @@ def _places(events: Sequence[Event], grid: Grid, ports: set[str]) -> dict[str, C
         for place, cell in cells.items()
         if cell.port is not None and (cell.port in ports or cell.port not in fleet.tiles)
     }
+    if not lie:
+        raise TilencaError("no tile lies on the board at the recording's end; there is nothing to draw")
     top, left = min(row for row, _ in lie.values()), min(col for _, col in lie.values())
     placed = {port: (row - top, col - left) for port, (row, col) in lie.items()}
     return dict(sorted(placed.items(), key=lambda one: one[1]))
