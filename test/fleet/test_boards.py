@@ -202,6 +202,10 @@ def test_tiles_that_run_another_model_than_most_are_told(capsys: pytest.CaptureF
     assert capsys.readouterr().err == ""
     tell_models({"a": other, "b": ours, "c": ours})
     assert capsys.readouterr().err.startswith("a: tile 3 runs model 1234, most run ABCD; ")
+    tell_models({"a": other, "b": ours})
+    told = capsys.readouterr().err
+    assert "run different models, and ignore each other (tile 3 1234, tile 3 ABCD)" in told
+    assert "--model DIR" in told, "neither of the two is the one to erase"
 
 
 def test_lists_of_tiles() -> None:

@@ -96,6 +96,8 @@ def test_a_link_that_was_never_good_is_marked_dead_and_told_once() -> None:
         lab.say("c", LinkSentence(3, 1000 * second, "E", 0, 0, 30 * second, 0, 0, None, 0, None, None))
     assert Grid().cells(lab.fleet, 1.0)[1, 0].marks["E"] is Mark.DEAD
     told = [text for text in lab.news if "whole" in text]
-    assert told == ["on E is a tile, but no frame of it arrives whole: check the plug"]
+    assert told == [
+        "on E is a tile, but no frame of it arrives whole: check the plug, and that both run one model"
+    ]
     lab.say("c", LinkSentence(3, 4000, "E", 0, 40, 95, 0, 0, 5, 0, 9, "W"))
     assert lab.news[-1] == "frames from E are not garbled any more"

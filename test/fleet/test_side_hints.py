@@ -86,7 +86,10 @@ def test_a_plug_that_is_half_in_is_named() -> None:
         humming[0].play(array.time_s, array.time_s + STEP_S)
 
     first, news = watched(plug_half_in, go_on=go_on)
-    assert first.text == "on E is a tile, but no frame of it arrives whole: check the plug"
+    assert (
+        first.text
+        == "on E is a tile, but no frame of it arrives whole: check the plug, and that both run one model"
+    )
     assert first.tile == news.tile == 3
     assert news.text.startswith("side E: bytes come without a stop bit: push the plug in")
 

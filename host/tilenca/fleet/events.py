@@ -26,6 +26,7 @@ from tilenca.protocol.sentences import (
 SILENCE_LOOK_S, SILENCE_LOOKS = 1.0, 3
 # The same as for a whole fleet: see `tell_models`.
 REMEDY = "flash the one that differs from most (tilenca flash)"
+GARBLED = "no frame of it arrives whole: check the plug, and that both run one model"
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ class Reporter:
         if health.garbled != (key in self._garbled):
             self._garbled ^= {key}
             if health.garbled:
-                return [(f"on {link.side} is a tile, but no frame of it arrives whole: check the plug", True)]
+                return [(f"on {link.side} is a tile, but {GARBLED}", True)]
             return [(f"frames from {link.side} are not garbled any more", False)]
         good = health.good
         if good is None:

@@ -37,7 +37,7 @@ FRAMING = SideHint(
 ALL_SILENT = SideHint(
     "turned?",
     "its lines are high, and no side hears anybody",
-    "the tile is turned by 90 degrees, or not plugged in",
+    "the tile is turned by 90 degrees, or not plugged in, or its model is not the others'",
 )
 ONE_SILENT = SideHint(
     "silent", "the line is high and silent", "the plug is not in, or its pins 3 and 4 are broken"
