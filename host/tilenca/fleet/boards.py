@@ -209,7 +209,7 @@ def tell_models(hellos: Mapping[str, HelloSentence]) -> None:
     """Warns of the tiles that run another model than most: their neighbours ignore them."""
     counted = Counter(hello.model_id for hello in hellos.values())
     most = max(counted, key=lambda model: counted[model], default=0)
-    if len([count for count in counted.values() if count == counted[most]]) > 1:
+    if list(counted.values()).count(counted[most]) > 1:
         each = ", ".join(f"tile {hello.tile} {hello.model_id:04X}" for hello in hellos.values())
         warn(f"the tiles run different models, and ignore each other ({each}); {ONE_MODEL}")
         return

@@ -9,7 +9,7 @@ from tilenca.base import paths
 from tilenca.emulator.experiment import Emulation
 from tilenca.protocol.sentences import HelloSentence
 from tilenca.shapes.file import UNKNOWN, Task
-from tilenca.views.tiles import Picture
+from tilenca.views.tiles import Picture, shown_by
 
 RIGHT, NOT_YET, WRONG = "right", "not yet", "wrong"
 
@@ -93,8 +93,8 @@ def counted(emulation: Emulation) -> str:
     answers = Counter(emulation.answers())
     right = answers.pop(emulation.shape.label, 0)
     first = f"{right} of {right + answers.total()} tiles show {emulation.shape.label}"
-    others = (f"{count} show{'s' * (count == 1)} {_word(label)}" for label, count in answers.most_common())
-    return ", ".join([first, *others])
+    others = shown_by((_word(label), count) for label, count in answers.most_common())
+    return f"{first}, {others}" if others else first
 
 
 def _word(label: str) -> str:

@@ -16,6 +16,7 @@ from tilenca.fleet.grid import Cell, Grid, Position
 from tilenca.fleet.state import Event, Fleet
 from tilenca.views.fleet_grid import draw_fitting
 from tilenca.views.fleet_table import live_table
+from tilenca.views.tiles import shown_by
 
 REDRAW_S = 0.25
 LOG_LINES = 200
@@ -97,10 +98,7 @@ class LiveView:
         (first_s, first), (last_s, last) = self._counted[0], self._counted[-1]
         parts = [
             f"{len(cells)} tiles",
-            ", ".join(
-                f"{count} show{'s' * (count == 1)} {label or 'nothing'}"
-                for label, count in shown.most_common()
-            ),
+            shown_by((label or "nothing", count) for label, count in shown.most_common()),
             *_troubles(cells),
             f"{(last - first) / (last_s - first_s):.0f} sentences/s" if last_s > first_s else "",
             _counted(sum(view.damaged for view in views), "damaged line"),

@@ -12,6 +12,7 @@ from tilenca.fleet.state import Event, Fleet, TileView
 from tilenca.shapes.edits import Cell
 from tilenca.shapes.glyphs import DARK_LOOK, Look, look_of, look_of_class
 from tilenca.simulator.trace import NOTHING, Film
+from tilenca.views.tiles import shown_by
 
 STEP_S, LAST_S = 0.4, 2.5  # how long a picture of a simulated run stays, and the last one
 LEAST_S, MOST_S = 0.12, 2.0  # the same of a recording
@@ -138,10 +139,7 @@ def _staying(last: Picture) -> Picture:
 def _verdict(pictures: Sequence[Picture], agreed_at: int | None) -> str:
     last = Counter(look.label or "nothing" for look in pictures[-1].looks if look is not None)
     if agreed_at is None:
-        return (
-            ", ".join(f"{count} show{'s' * (count == 1)} {label}" for label, count in last.most_common())
-            or "all silent"
-        )
+        return shown_by(last.most_common()) or "all silent"
     return f"all show {next(iter(last))} from {pictures[agreed_at].caption}"
 
 

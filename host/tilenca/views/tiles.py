@@ -1,6 +1,6 @@
 """Tiles as a picture in the terminal: each its 7-segment digit, in its place and colour."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console, Group
@@ -20,6 +20,11 @@ SHAPE_GAP = "  "
 HOUSING = "on rgb(28,28,28)"
 DARK = "rgb(60,60,60)"
 FRAME = f"rgb(88,88,88) {HOUSING}"
+
+
+def shown_by(counts: Iterable[tuple[str, int]]) -> str:
+    """How many tiles show what, like `5 show 4, 1 shows a dash`; the labels are in words."""
+    return ", ".join(f"{count} show{'s' * (count == 1)} {label}" for label, count in counts)
 
 
 @dataclass(frozen=True)
