@@ -97,11 +97,21 @@ def test_a_model_without_directions_gets_them_where_the_recipe_trains_them(tmp_p
     assert make_plan(arguments(tmp_path, "--recipe", "damage")).dimensions == Dimensions(25, 96, 96, 4)
 
 
+def test_a_wider_network_begins_with_the_weights_of_a_narrower_one(tmp_path: Path) -> None:
+    words = ["--weights", "digits-40", "--recipe", "full", "--state", "24", "--hidden", "48"]
+    plans = [make_plan(arguments(tmp_path, *words)) for _ in range(2)]
+    first, second = (plan.initial for plan in plans)
+    assert first is not None
+    assert second is not None
+    assert plans[0].dimensions == first.dimensions == Dimensions(24, 48, 48)
+    assert first.model_id == second.model_id
+
+
 @pytest.mark.parametrize(
     ("more", "wanted"),
     [
-        (["--weights", "digits", "--hidden", "40"], "--hidden 96, not 40"),
-        (["--weights", "digits", "--state", "21"], "--state 24, not 21"),
+        (["--weights", "digits", "--hidden", "40"], "--hidden 96, and 40 is less"),
+        (["--weights", "digits", "--state", "21"], "--state 24, and 21 is less"),
         (["--weights", "letters"], "of the same classes"),
     ],
 )

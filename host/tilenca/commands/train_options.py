@@ -54,7 +54,7 @@ def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
         "--weights",
         type=model_folder,
         metavar="MODEL",
-        help="begin with the weights of this model, of the same classes and widths (random ones)",
+        help="begin with the weights of this model, of the same classes and no wider (random ones)",
     )
     add("--device", default="cpu", metavar="NAME", help="cpu (default) or cuda")
     add(

@@ -20,6 +20,7 @@ from tilenca.model.file import (
     checkpoints,
     load_model,
 )
+from tilenca.model.widen import widened
 from tilenca.shapes.batch import Drawings, load_training_task
 from tilenca.shapes.derive import known_of
 from tilenca.shapes.file import UNKNOWN, load_task
@@ -81,6 +82,8 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
             f"{args.weights}: its classes are {' '.join(initial.labels)}, those of this training are "
             f"{' '.join(labels)}; begin with a model of the same classes, or without --weights"
         )
+    if initial is not None and initial.dimensions != dimensions:
+        initial = widened(initial, dimensions, np.random.default_rng(0))
     seeds = tuple(range(args.seed, args.seed + (args.seeds or recipe.seeds)))
     runs = args.validation_runs or recipe.validation_runs
     if recipe.varied:
@@ -100,17 +103,21 @@ def _dimensions(args: argparse.Namespace, recipe: Recipe, initial: Model | None)
     """The widths that the arguments, the initial model or the recipe say.
 
     Raises:
-        UsageError: the arguments and the initial model differ.
+        UsageError: an argument is less than the initial model has.
     """
     if initial is None:
         hidden = args.hidden or recipe.hidden
         directions = len(SIDES) if recipe.directions else 0
         return Dimensions(args.state or usual_channels(recipe), hidden, hidden, directions)
     theirs = initial.dimensions
-    for option, width in (("state", theirs.channels), ("hidden", theirs.hidden1)):
-        if (asked := getattr(args, option)) not in (None, width):
-            raise UsageError(f"{args.weights}: is made with --{option} {width}, not {asked}; leave it out")
-    return theirs
+    for option, width in (("state", theirs.channels), ("hidden", max(theirs.hidden1, theirs.hidden2))):
+        if (asked := getattr(args, option)) is not None and asked < width:
+            raise UsageError(
+                f"{args.weights}: is made with --{option} {width}, and {asked} is less; give no less, or "
+                "leave it out"
+            )
+    hidden1, hidden2 = args.hidden or theirs.hidden1, args.hidden or theirs.hidden2
+    return Dimensions(args.state or theirs.channels, hidden1, hidden2, theirs.directions)
 
 
 def _check_variants(path: Path, task: Drawings) -> None:

@@ -266,10 +266,10 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
     words += ["--seeds", str(args.seeds or recipe.seeds)]
     words += ["--iterations", str(args.iterations or recipe.iterations)]
-    if args.weights is None:
-        words += ["--hidden", str(args.hidden or recipe.hidden)]
-    else:
+    if args.weights is not None:
         words += ["--weights", place(args.weights)]
+    if hidden := args.hidden or (args.weights is None and recipe.hidden):
+        words += ["--hidden", str(hidden)]
     for option, default in (("state", usual_channels(recipe)), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]

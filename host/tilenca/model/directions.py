@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.base.sides import SIDES
-from tilenca.model.file import NEIGHBOURHOOD, Model
+from tilenca.model.file import Model
+from tilenca.model.widen import Arrays, placed
 from tilenca.protocol.constants import MISSING
 
 NOWHERE = -1
@@ -39,14 +40,9 @@ def with_directions(model: Model) -> Model:
     old = model.dimensions
     size = replace(old, channels=old.channels + len(SIDES), directions=len(SIDES))
     kept = np.delete(np.arange(size.channels), np.arange(len(SIDES)) + old.channels - len(model.labels))
-    inputs = (np.arange(NEIGHBOURHOOD)[:, None] * size.channels + kept).ravel()
-    places = {"w1": (slice(None), inputs), "w3": (kept,), "b3": (kept,)}
 
-    def wider(arrays: Any) -> dict[str, NDArray[Any]]:
-        found = dict(arrays)
-        for name, place in places.items():
-            found[name] = np.zeros(size.shapes()[name], arrays[name].dtype)
-            found[name][place] = arrays[name]
-        return found
+    def wider(arrays: Arrays) -> Arrays:
+        none = {name: np.zeros(shape, arrays[name].dtype) for name, shape in size.shapes().items()}
+        return placed(arrays, kept, none)
 
     return Model(model.labels, size, wider(model.integer), wider(model.floats), model.metadata)
