@@ -109,7 +109,7 @@ def test_what_a_tile_says_is_stamped_with_its_time(avr: Compile) -> None:
     }"""
     array = Array(avr(source), switch_on_s=[0.5])
     array.run(0.6)
-    times = [time_s for time_s, _ in array[0].read_serial_timed()]
+    times = array[0].read_serial_timed()[1]
     assert len(times) == 9
     assert abs(times[0] - 0.5101) < 0.0002
 

@@ -67,6 +67,20 @@ def test_the_share_that_is_done_grows_with_the_time_asked_for() -> None:
     assert run.array.time_s == pytest.approx(0.2, abs=1e-4)
 
 
+def test_long_slices_hear_the_same_lines_with_the_same_times() -> None:
+    said: list[list[Heard]] = []
+    reports = []
+    for slice_s in (0.05, 0.25):
+        running, heard = emulation(EmulationSettings(seconds=1.3)), list[Heard]()
+        with running.array:
+            running.run(lambda _, lines, heard=heard: heard.extend(lines), slice_s)  # type: ignore[misc]
+            reports.append(running.report(0.0))
+        said.append(sorted(heard, key=lambda line: (line.time_s, line.port)))
+    assert len(said[0]) > 100
+    assert said[0] == said[1]
+    assert reports[0] == reports[1]
+
+
 def test_tiles_without_power_do_not_count_and_no_tile_at_all_is_not_right() -> None:
     run = emulation(EmulationSettings(seconds=0.05))
     for tile in run.array:

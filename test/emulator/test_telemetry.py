@@ -23,8 +23,8 @@ class Speaker:
     def __init__(self, said: bytes) -> None:
         self.said = said
 
-    def read_serial_timed(self) -> list[tuple[float, int]]:
-        return [(number / 1000, value) for number, value in enumerate(self.said)]
+    def read_serial_timed(self) -> tuple[bytes, list[float]]:
+        return self.said, [number / 1000 for number in range(len(self.said))]
 
 
 @given(st.lists(PIECES, max_size=12).map(b"".join))

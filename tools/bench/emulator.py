@@ -15,7 +15,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench import emulator_firmware
+from bench import emulator_firmware, python_share
 from bench.publish import publish
 from tilenca.base.paths import FIRMWARE_ELF, ROOT
 from tilenca.base.sides import EAST, WEST
@@ -146,7 +146,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as directory:
         place = Path(directory)
         firmware = emulator_firmware.measure(args.rounds, FIRMWARE_ELF, simavr(place))
-        section = table([*firmware, *measure(args.rounds, place)])
+        section = table([*firmware, *python_share.measure(args.rounds), *measure(args.rounds, place)])
     cores = emulator_firmware.cores()
     section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; other programs may have run meanwhile."
     publish(section, args.write, BEGIN, END)

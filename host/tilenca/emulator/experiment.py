@@ -179,8 +179,8 @@ class Emulation:
         """Whether it has run for as long as its settings ask."""
         return self.share_done() >= 1.0
 
-    def run(self, on_slice: Callable[["Emulation", list[Heard]], None]) -> None:
-        """Runs until done, and calls `on_slice` after every slice of it.
+    def run(self, on_slice: Callable[["Emulation", list[Heard]], None], slice_s: float = SLICE_S) -> None:
+        """Runs until done, and calls `on_slice` after every slice of it, of so many emulated seconds.
 
         Raises:
             TilencaError: a tile stopped at a fault, or does not get its updates done.
@@ -194,8 +194,8 @@ class Emulation:
                 unread = "" if done else "; one that hangs, or a clock 4 % off, is not heard"
                 limit = f"in {limit_s:.1f} s instead of {self.settings.updates}"
                 raise TilencaError(f"{about} {limit}; give --seconds to run on{unread}")
-            left_s = SLICE_S if self.settings.seconds is None else self.settings.seconds - self.array.time_s
-            on_slice(self, self.advance(min(SLICE_S, max(left_s, 1e-6))))
+            left_s = slice_s if self.settings.seconds is None else self.settings.seconds - self.array.time_s
+            on_slice(self, self.advance(min(slice_s, max(left_s, 1e-6))))
 
     def _limit_s(self) -> float:
         if self.settings.seconds is not None:

@@ -9,7 +9,7 @@ from tilenca.emulator.probe import PinProbe, WireTap, pin_port
 from tilenca.emulator.types import DisplayChange, Mark, ResetCause, Stack
 
 EEPROM_BYTES = 4096
-RECEIVE_CHUNK = 4096
+RECEIVE_CHUNK = 1024
 MOST_TILES = 4096
 DATA_SPACE = 0x800000  # where an ELF file of AVR puts data memory
 
@@ -20,6 +20,7 @@ class EmulatedTile:
     def __init__(self, array: Home, index: int) -> None:
         self._array = array
         self.index = index
+        self._inbox = new("uint8_t[]", RECEIVE_CHUNK), new("double[]", RECEIVE_CHUNK)
 
     def retire(self) -> None:
         """The array it was in has gone back to before it was there."""
@@ -130,15 +131,16 @@ class EmulatedTile:
 
     def read_serial(self) -> bytes:
         """Everything the tile has sent on its USB serial since the last read."""
-        return bytes(byte for _, byte in self.read_serial_timed())
+        return self.read_serial_timed()[0]
 
-    def read_serial_timed(self) -> list[tuple[float, int]]:
-        """Like `read_serial`, each byte with the time in seconds at which it had arrived."""
-        received: list[tuple[float, int]] = []
-        values, times = new("uint8_t[]", RECEIVE_CHUNK), new("double[]", RECEIVE_CHUNK)
-        while count := self._call("tile_receive", values, times, RECEIVE_CHUNK):
-            received.extend(zip(numbers(times, count), numbers(values, count), strict=True))
-        return received
+    def read_serial_timed(self) -> tuple[bytes, list[float]]:
+        """Like `read_serial`, and for each byte the time in seconds at which it had arrived."""
+        data, arrived, count = b"", [], RECEIVE_CHUNK
+        while count == RECEIVE_CHUNK:
+            count = self._call("tile_receive", *self._inbox, RECEIVE_CHUNK)
+            data += bytes(library().ffi.buffer(self._inbox[0], count))
+            arrived += numbers(self._inbox[1], count)
+        return data, arrived
 
     def read_eeprom(self, address: int = 0, count: int = EEPROM_BYTES) -> bytes:
         """Bytes of the EEPROM. A range that ends beyond a memory is refused, here as below."""

@@ -1,6 +1,8 @@
 """The checksums of the protocol: CRC-16 of frames and settings, XOR of sentences (docs/PROTOCOL.md)."""
 
 import binascii
+from functools import reduce
+from operator import xor
 
 
 def crc16(data: bytes) -> int:
@@ -10,7 +12,4 @@ def crc16(data: bytes) -> int:
 
 def checksum(body: bytes) -> int:
     """XOR of all bytes between `$` and `*`."""
-    result = 0
-    for byte in body:
-        result ^= byte
-    return result
+    return reduce(xor, body, 0)

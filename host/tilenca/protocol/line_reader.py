@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from tilenca.protocol.board_test import board_test_text
 from tilenca.protocol.constants import MAX_SENTENCE
-from tilenca.protocol.sentences import Sentence, parse_sentence
+from tilenca.protocol.patterns import SENTENCE
+from tilenca.protocol.sentences import Sentence, sentence_of
 
-# A sentence begins at `$` and ends with two digits after `*`; its checksum decides whether it is one.
-_CANDIDATE = re.compile(rb"\$[^*]*\*..", re.DOTALL)
-_BREAK = re.compile(rb"[\r\n]+|(?=\$)")
+# A line, and what completes it: its end, or the `$` of the next one. The last one may be without.
+_LINE = re.compile(rb"(\$?[^\r\n$]*)(?:[\r\n]+|(?=\$)|\Z)")
 
 
 class LineReader:
@@ -25,26 +25,35 @@ class LineReader:
 
     def feed(self, data: bytes) -> list[tuple[bytes, Sentence | None]]:
         """The lines that `data` completed: raw bytes, and the sentence or None if damaged; never raises."""
-        *pieces, self._buffer = _BREAK.split(self._buffer + data)
-        if len(self._buffer) > MAX_SENTENCE:
-            pieces.append(self._buffer)
-            self._buffer = b""
+        return [line for _, line in self.feed_at(data)]
+
+    def feed_at(self, data: bytes) -> list[tuple[int, tuple[bytes, Sentence | None]]]:
+        """Like `feed`, each line with the index in `data` of the byte that completed it."""
+        before, text = len(self._buffer), self._buffer + data
+        self._buffer = b""
         lines = []
-        for piece in filter(None, map(bytes.strip, pieces)):
-            found = _lines(piece)
-            if not self._joined_midway or piece.startswith(b"$") or board_test_text(piece):
-                lines += found
-            self._joined_midway = False
+        for match in _LINE.finditer(text):
+            end = match.end(1)
+            if end == len(text):
+                if len(match[1]) <= MAX_SENTENCE:
+                    self._buffer = match[1]
+                    break
+                end -= 1
+            if piece := match[1].strip():
+                if not self._joined_midway or piece.startswith(b"$") or board_test_text(piece):
+                    lines += [(end - before, line) for line in _lines(piece)]
+                self._joined_midway = False
         return lines
 
 
 def _lines(piece: bytes) -> list[tuple[bytes, Sentence | None]]:
-    candidate = _CANDIDATE.match(piece)
-    sentence = parse_sentence(candidate[0]) if candidate else None
-    if candidate is None or sentence is None:
+    """The sentence that a piece begins with, and the rest; its checksum decides whether it is one."""
+    match = SENTENCE.match(piece)
+    sentence = sentence_of(match) if match else None
+    if match is None or sentence is None:
         return [(piece, None)]
-    rest = piece[candidate.end() :].strip()
-    return [(candidate[0], sentence), *([(rest, None)] if rest else [])]
+    rest = piece[match.end() :].strip()
+    return [(match[0], sentence), *([(rest, None)] if rest else [])]
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 No port and no clock. `protocol.commands` has the host's sentences, `protocol.frames` the tiles' frames.
 """
 
+import re
+
 from tilenca.base.sides import SIDES
 from tilenca.protocol import patterns
 from tilenca.protocol.checksums import checksum
@@ -39,6 +41,7 @@ __all__ = [
     "framed",
     "missing_side",
     "parse_sentence",
+    "sentence_of",
     "type_of",
 ]
 
@@ -93,7 +96,12 @@ def parse_sentence(line: bytes | str) -> Sentence | None:
     """
     raw = line.encode("ascii", "replace") if isinstance(line, str) else line
     match = patterns.SENTENCE.fullmatch(raw.strip())
-    if match is None or checksum(match[1]) != int(match[2], 16):
+    return sentence_of(match) if match else None
+
+
+def sentence_of(match: re.Match[bytes]) -> Sentence | None:
+    """The sentence that `patterns.SENTENCE` found; None for damage, or an unknown name."""
+    if checksum(match[1]) != int(match[2], 16):
         return None
     text = match[1].decode("ascii")
     parse = _PARSERS.get(text.partition(",")[0])

@@ -11,6 +11,7 @@ A glyph is a bit mask of segments, bit 0 = a ... bit 6 = g, bit 7 = dp::
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias
 
 SEGMENT_NAMES = "abcdefg"
@@ -109,6 +110,7 @@ def screen_colour(duty: Duty) -> tuple[float, float, float]:
     return brightness(duty[0]), brightness(duty[1]), brightness(duty[2])
 
 
+@lru_cache(1024)
 def label_of_glyph(segments: int, known: tuple[str, ...] = ()) -> str:
     """The character that lit `segments` show; "" for a dark display, "?" for no known character.
 
