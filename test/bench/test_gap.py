@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from bench import gap
+from bench.pairs import EmulatedTiles, Pairs, drawings_of, emulate, period_of, simulate
 from tilenca.base import paths
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
@@ -24,29 +25,29 @@ def image(firmware: Path) -> Image:
 
 
 @pytest.fixture(scope="module")
-def tiles(image: Image) -> list[gap.EmulatedTiles]:
-    return gap.emulate(image, gap.drawings_of(image), RUNS, SEED)
+def tiles(image: Image) -> list[EmulatedTiles]:
+    return emulate(image, drawings_of(image), RUNS, SEED)
 
 
-def pairs(image: Image, tiles: list[gap.EmulatedTiles], times: TileTimes) -> gap.Pairs:
-    found = gap.simulate(image.model, gap.drawings_of(image), tiles, times, gap.period_of(image))
-    return gap.Pairs(np.array([run.converged_at for run in tiles]), found)
+def pairs(image: Image, tiles: list[EmulatedTiles], times: TileTimes) -> Pairs:
+    found = simulate(image.model, drawings_of(image), tiles, times, period_of(image))
+    return Pairs(np.array([run.converged_at for run in tiles]), found)
 
 
 def times_of(image: Image) -> TileTimes:
-    return tile_times(image.model.dimensions, gap.period_of(image))
+    return tile_times(image.model.dimensions, period_of(image))
 
 
-def test_a_seed_decides_everything(image: Image, tiles: list[gap.EmulatedTiles]) -> None:
-    assert gap.emulate(image, gap.drawings_of(image), 3, SEED) == tiles[:3]
-    (other,) = gap.emulate(image, gap.drawings_of(image), 1, SEED + 1)
+def test_a_seed_decides_everything(image: Image, tiles: list[EmulatedTiles]) -> None:
+    assert emulate(image, drawings_of(image), 3, SEED) == tiles[:3]
+    (other,) = emulate(image, drawings_of(image), 1, SEED + 1)
     assert other.ppm != tiles[0].ppm
     first, second = (pairs(image, tiles, times_of(image)) for _ in range(2))
     assert list(first.simulator) == list(second.simulator)
 
 
 def test_tiles_and_simulator_are_as_far_apart_as_ten_runs_can_tell(
-    image: Image, tiles: list[gap.EmulatedTiles]
+    image: Image, tiles: list[EmulatedTiles]
 ) -> None:
     assert [run.drawing for run in tiles] == list(range(RUNS))
     found = pairs(image, tiles, times_of(image))
@@ -58,7 +59,7 @@ def test_tiles_and_simulator_are_as_far_apart_as_ten_runs_can_tell(
     assert found.near >= 0.7
 
 
-def test_messages_half_a_period_too_early_are_found_out(image: Image, tiles: list[gap.EmulatedTiles]) -> None:
+def test_messages_half_a_period_too_early_are_found_out(image: Image, tiles: list[EmulatedTiles]) -> None:
     times = times_of(image)
     right = pairs(image, tiles, times)
     wrong = pairs(image, tiles, replace(times, computing=tuple(part - 0.5 for part in times.computing)))
@@ -69,7 +70,7 @@ def test_messages_half_a_period_too_early_are_found_out(image: Image, tiles: lis
 
 def test_pairs_are_compared_one_by_one() -> None:
     tiles, simulator = [5.0, 6.0, 9.0, math.inf], [5.0, 7.0, 6.0, math.inf]
-    found = gap.Pairs(np.tile(tiles, 100), np.tile(simulator, 100))
+    found = Pairs(np.tile(tiles, 100), np.tile(simulator, 100))
     assert (found.same, found.near) == (0.5, 0.75)
     assert found.gap(5) == (0.0, 3 / 400), "no pair differs"
     assert found.gap(6) == pytest.approx((0.0, 1.96 * 0.5**0.5 / 20)), "as many differ either way"

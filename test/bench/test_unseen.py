@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench import gap, unseen
+from bench import unseen
+from bench.pairs import Pairs
 from tilenca.base import paths
 from tilenca.shapes.batch import load_drawings
 
@@ -22,7 +23,7 @@ def test_the_drawings_come_from_all_over_the_file() -> None:
 def test_a_row_counts_where_the_two_differ() -> None:
     drawings = unseen.some(load_drawings([paths.SHAPES / "digits.toml"]), 4)
     never = math.inf
-    pairs = gap.Pairs(np.array([9.0, never, never, 30.0]), np.array([12.0, 20.0, never, never]))
+    pairs = Pairs(np.array([9.0, never, never, 30.0]), np.array([12.0, 20.0, never, never]))
     right = "0.500 (0.150 to 0.850)"
     assert (
         unseen.row("mine", drawings, pairs) == f"| `mine` | 4 | 9 to 14 | {right} | {right} | 0.500 | 1, 1 |"

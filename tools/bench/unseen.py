@@ -1,6 +1,6 @@
 """Drawings that no training saw, on emulated tiles and in the simulator: python -m bench.unseen M=F [M=F].
 
-Every drawing runs twice, as in `bench.gap`: with the same clocks and moments of power. A run is right when
+Every drawing runs twice, as in `bench.pairs`: with the same clocks and moments of power. A run is right when
 all tiles show the drawing's class after the last update. So a model's share of right drawings is measured on
 the firmware itself, and the simulator that measures the model cards is held against it, drawing by drawing.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench import gap
+from bench.pairs import Pairs, image_with, run_pairs
 from bench.publish import publish
 from tilenca.base import paths
 from tilenca.base.errors import TilencaError, UsageError
@@ -55,7 +55,7 @@ def some(drawings: Drawings, count: int) -> Drawings:
     )
 
 
-def row(name: str, drawings: Drawings, pairs: gap.Pairs) -> str:
+def row(name: str, drawings: Drawings, pairs: Pairs) -> str:
     """A row of the table in Markdown."""
     tiles, simulator = np.isfinite(pairs.tiles), np.isfinite(pairs.simulator)
     cells = [f"`{name}`", f"{len(drawings)}", f"{drawings.sizes.min()} to {drawings.sizes.max()}"]
@@ -71,15 +71,15 @@ def measure(one: Asked, count: int, updates: int, seed: int) -> str:
     """Runs one model, and says what came of it as a row.
 
     Raises:
-        TilencaError: see `gap.image_with`, `load_drawings`, `gap.emulate`.
+        TilencaError: see `image_with`, `load_drawings`, `bench.pairs.emulate`.
     """
     folder = paths.MODELS / one.model
     if not folder.is_dir():
         raise UsageError(f"there is no models/{one.model}")
-    image = gap.image_with(folder)
+    image = image_with(folder)
     drawings = some(load_drawings([one.file], labels=image.model.labels), count)
     make(image.elf)
-    return row(one.model, drawings, gap.measure(image, drawings, len(drawings), seed, updates))
+    return row(one.model, drawings, run_pairs(image, drawings, len(drawings), seed, updates))
 
 
 def main() -> int:
