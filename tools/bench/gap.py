@@ -37,8 +37,13 @@ def rows(name: str, pairs: Pairs) -> list[str]:
     ]
 
 
-def table(measured: dict[str, Pairs], runs: int, seed: int) -> str:
-    """All models in Markdown."""
+def table(measured: dict[str, Pairs], command: str) -> str:
+    """All models in Markdown.
+
+    Args:
+        measured: by model.
+        command: that measures them again.
+    """
     updates = " | ".join(map(str, UPDATES))
     return "\n".join(
         [
@@ -46,8 +51,7 @@ def table(measured: dict[str, Pairs], runs: int, seed: int) -> str:
             "|---|" + "---|" * (len(UPDATES) + 2),
             *(line for name, pairs in measured.items() for line in rows(name, pairs)),
             "",
-            f"`python -m bench.gap --runs {runs} --seed {seed}`; the gaps have their 95 % intervals, "
-            "of pairs of runs.",
+            f"`{command}`; the gaps have their 95 % intervals, of pairs of runs.",
         ]
     )
 
@@ -55,26 +59,35 @@ def table(measured: dict[str, Pairs], runs: int, seed: int) -> str:
 def main() -> int:
     """Prints the table, and writes it if asked to."""
     parser = argparse.ArgumentParser(description="How far the simulator is from emulated tiles.")
-    parser.add_argument("--runs", type=whole(1), default=100, help="of each model (default: %(default)s)")
+    parser.add_argument(
+        "--runs", type=whole(1), nargs="+", default=[100], metavar="N",
+        help="of all models, or of one after another (default: 100)",
+    )  # fmt: skip
     parser.add_argument(
         "--model", nargs="+", default=MODELS, metavar="NAME", help=f"of models/ (default: {' '.join(MODELS)})"
     )
     parser.add_argument("--seed", type=whole(0), default=1, help="of all runs (default: %(default)s)")
     parser.add_argument("--write", type=Path, metavar="F", help="put the table into this document")
     args = parser.parse_args()
-    measured = {}
+    if len(args.runs) not in (1, len(args.model)):
+        parser.error(f"argument --runs: one number, or one for each of {len(args.model)} models")
+    runs_of_each = args.runs * (len(args.model) // len(args.runs))
+    command = f"python -m bench.gap --runs {' '.join(map(str, args.runs))} --seed {args.seed}"
+    if tuple(args.model) != MODELS:
+        command += f" --model {' '.join(args.model)}"
+    measured: dict[str, Pairs] = {}
     try:
-        for name in args.model:
+        for name, runs in zip(args.model, runs_of_each, strict=True):
             image = image_with(paths.MODELS / name)
             make(image.elf)
             started = time.perf_counter()
-            measured[name] = run_pairs(image, drawings_of(image), args.runs, args.seed)
-            rate = args.runs / (time.perf_counter() - started)
+            measured[name] = run_pairs(image, drawings_of(image), runs, args.seed)
+            rate = runs / (time.perf_counter() - started)
             print(f"{name}: {rate:.2f} runs a second", file=sys.stderr)
     except TilencaError as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
-    publish(table(measured, args.runs, args.seed), args.write, BEGIN, END)
+    publish(table(measured, command), args.write, BEGIN, END)
     return 0
 
 
