@@ -110,8 +110,8 @@ def test_a_wider_network_begins_with_the_weights_of_a_narrower_one(tmp_path: Pat
 @pytest.mark.parametrize(
     ("more", "wanted"),
     [
-        (["--weights", "digits", "--hidden", "40"], "--hidden 96, and 40 is less"),
-        (["--weights", "digits", "--state", "21"], "--state 24, and 21 is less"),
+        (["--weights", "digits", "--hidden", "40"], "needs --hidden 96 or more, not 40"),
+        (["--weights", "digits", "--state", "21"], "needs --state 24 or more, not 21"),
         (["--weights", "letters"], "of the same classes"),
     ],
 )

@@ -118,9 +118,9 @@ def test_the_command_of_a_model_has_what_decides_it_and_nothing_else(
 def test_the_command_of_a_wider_model_has_the_widths_and_the_weights(
     two_shapes: Path, tmp_path: Path
 ) -> None:
-    args = arguments(two_shapes, tmp_path, "--weights", "digits-40", "--state", "30")
+    args = arguments(two_shapes, tmp_path, "--weights", "digits-40", "--state", "24")
     assert training_command(args).split()[-6:] == [
-        *("--weights", "models/digits-40", "--hidden", "12", "--state", "30")
+        *("--weights", "models/digits-40", "--hidden", "12", "--state", "24")
     ]
     args.hidden = args.state = None
     assert training_command(args).split()[-2:] == ["--weights", "models/digits-40"]

@@ -3,18 +3,24 @@
 import numpy as np
 import pytest
 
-from firmware.synthetic_models import random_network
 from tilenca.model.directions import with_directions
 from tilenca.model.file import Dimensions, Model
+from tilenca.model.initial import initial_arrays
 from tilenca.model.quantise import quantise
 from tilenca.model.widen import widened
 from tilenca.simulator.core_library import update_cells
 
+BIASES = ("b1", "b2", "b3")
+
 
 def network(size: Dimensions) -> Model:
-    """Random weights; the integers are the rounded real ones."""
-    random = random_network(size, 1)
-    return quantise(size, ("a", "b"), random.floats, {"recipe_name": "none"})[0]
+    """Random weights, so small that few units are saturated."""
+    random = np.random.default_rng(1)
+    floats = initial_arrays(size, random, zero_last=False)
+    floats |= {name: random.uniform(-0.2, 0.2, floats[name].shape).astype(np.float32) for name in BIASES}
+    model, cut = quantise(size, ("a", "b"), floats, {"recipe_name": "none"})
+    assert cut == 0
+    return model
 
 
 @pytest.mark.parametrize("size", [Dimensions(9, 7, 9), Dimensions(6, 12, 14), Dimensions(10, 8, 11)])

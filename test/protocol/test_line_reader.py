@@ -93,3 +93,12 @@ def test_an_endless_line_is_cut_and_the_next_sentence_found() -> None:
     )
     assert [sentence for _, sentence in lines if sentence] == [TILE]
     assert sum(sentence is None for _, sentence in lines) == 10
+
+
+def test_a_line_is_complete_at_the_byte_that_ends_it_or_is_one_too_many() -> None:
+    reader = LineReader()
+    assert [at for at, _ in reader.feed_at(b"$AS")] == []
+    assert reader.feed_at(b"K*45\r\n$") == [(4, (b"$ASK*45", None))]
+    assert reader.feed_at(b"noise$") == [(5, (b"$noise", None))]
+    endless = b"n" * MAX_SENTENCE
+    assert reader.feed_at(endless) == [(MAX_SENTENCE - 1, (b"$" + endless, None))]

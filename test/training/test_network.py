@@ -5,8 +5,9 @@ import torch
 
 from support.integer_network import perceive_by_convolution
 from tilenca.model.file import LARGEST, SCALES, Dimensions
+from tilenca.model.initial import initial_arrays
 from tilenca.shapes.batch import Drawings
-from tilenca.training.network import TileNet, initial_arrays, perceive
+from tilenca.training.network import TileNet, perceive
 
 
 def test_perceiving_real_cells_equals_a_convolution_over_the_whole_grid(drawings: Drawings) -> None:

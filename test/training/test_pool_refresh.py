@@ -8,12 +8,12 @@ import pytest
 
 from tilenca.base import paths
 from tilenca.model.file import Dimensions, load_model
+from tilenca.model.initial import initial_arrays
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import load_training_task
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.simulator import Simulator
 from tilenca.training.curriculum import build
-from tilenca.training.network import initial_arrays
 from tilenca.training.pool import CONVERGED_AFTER, Pool, Pools
 from tilenca.training.pool_refresh import (
     CLOCKS,

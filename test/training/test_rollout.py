@@ -6,8 +6,9 @@ import torch
 
 from support.training import usual
 from tilenca.model.file import Dimensions
+from tilenca.model.initial import initial_arrays
 from tilenca.shapes.batch import Drawings
-from tilenca.training.network import TileNet, initial_arrays
+from tilenca.training.network import TileNet
 from tilenca.training.recipes import RECIPES
 from tilenca.training.rollout import rollout, rollout_by_autograd, use_threads
 from tilenca.training.update_schedule import draw_schedule

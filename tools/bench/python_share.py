@@ -46,7 +46,7 @@ def spent_here(seconds: float) -> Spent:
 
     Array.run = timed  # type: ignore[assignment]
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        status = cli.main(["emulate", "--shape", SHAPE, "--seconds", f"{seconds:g}"])
+        status = cli.main(["emulate", "--shape", SHAPE, "--threads", "1", "--seconds", f"{seconds:g}"])
     if status != 0:
         raise RuntimeError(f"the command ended with {status}")
     return Spent(time.process_time(), library_s)
@@ -70,7 +70,7 @@ def measure(rounds: int) -> list[tuple[str, str, str]]:
         once_s.append(short.python_s - further_s / (LONGER - 1))
     if rounds > 1:
         note(of_rounds("emulator: Python's share of each emulated second", shares, "of the time", False))
-    what = f"`tilenca emulate --shape {SHAPE}`, sixteen tiles: Python's share of each emulated second"
+    what = f"`tilenca emulate --shape {SHAPE}`, sixteen tiles, one thread: Python, of each emulated second"
     return [
         (what, f"{100 * min(shares):.1f} %", "3 %"),
         ("the same, Python once for the command's start and end", f"{min(once_s):.1f} s", ""),

@@ -16,8 +16,9 @@ from torch import Tensor
 from bench.figures import note, of_rounds
 from tilenca.base import paths
 from tilenca.model.file import Dimensions
+from tilenca.model.initial import initial_arrays
 from tilenca.shapes.batch import load_drawings
-from tilenca.training.network import TileNet, initial_arrays
+from tilenca.training.network import TileNet
 from tilenca.training.recipes import RECIPES
 from tilenca.training.rollout import rollout, rollout_by_autograd, use_threads
 from tilenca.training.rollout_kernel import library

@@ -208,8 +208,8 @@ def _run_one(
             if args.record is not None:
                 kept.extend(heard)
 
-        closely = (args.fault, args.vcd, args.pin, args.frames, args.gdb, args.check_states)
-        emulation.run(look, SLICE_S if args.seconds is None or any(closely) else LONG_SLICE_S)
+        looked_at = any((args.fault, args.vcd, args.frames, args.gdb, args.check_states))
+        emulation.run(look, SLICE_S if args.seconds is None or looked_at else LONG_SLICE_S)
         result = result_of(args, emulation, task, started)
         if check is not None:
             words = f"{result.verdict}; {check.words()}"

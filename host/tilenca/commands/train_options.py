@@ -42,13 +42,13 @@ def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
         "--state",
         type=whole(2, MAX_CHANNELS),
         metavar="C",
-        help=f"channels of the state (default {DEFAULT_CHANNELS})",
+        help=f"channels of the state ({DEFAULT_CHANNELS}, or as many as --weights has)",
     )
     add(
         "--hidden",
         type=whole(1, MAX_WIDTH),
         metavar="H",
-        help="width of both hidden layers (as the recipe says)",
+        help="width of both hidden layers (as the recipe says, or --weights has)",
     )
     add(
         "--weights",

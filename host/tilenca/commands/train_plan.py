@@ -113,8 +113,7 @@ def _dimensions(args: argparse.Namespace, recipe: Recipe, initial: Model | None)
     for option, width in (("state", theirs.channels), ("hidden", max(theirs.hidden1, theirs.hidden2))):
         if (asked := getattr(args, option)) is not None and asked < width:
             raise UsageError(
-                f"{args.weights}: is made with --{option} {width}, and {asked} is less; give no less, or "
-                "leave it out"
+                f"{args.weights}: needs --{option} {width} or more, not {asked}; it can be left out"
             )
     hidden1, hidden2 = args.hidden or theirs.hidden1, args.hidden or theirs.hidden2
     return Dimensions(args.state or theirs.channels, hidden1, hidden2, theirs.directions)

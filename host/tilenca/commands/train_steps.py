@@ -270,7 +270,8 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
         words += ["--weights", place(args.weights)]
     if hidden := args.hidden or (args.weights is None and recipe.hidden):
         words += ["--hidden", str(hidden)]
-    for option, default in (("state", usual_channels(recipe)), ("device", "cpu"), ("validation_runs", None)):
+    usual = usual_channels(recipe) if args.weights is None else None
+    for option, default in (("state", usual), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tilenca.model.file import NEIGHBOURHOOD, Dimensions, Model
+from tilenca.model.initial import initial_arrays
 from tilenca.model.quantise import quantise
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -19,7 +20,7 @@ def widened(model: Model, size: Dimensions, random: np.random.Generator) -> Mode
     """The same model with more channels behind the seed's, and with more hidden units.
 
     Its tiles show what they showed: the old units do not read the new ones, and the new channels stay zero.
-    The new units read everything by random weights (Glorot-uniform), and all units read the new channels, or
+    The new units read everything by random weights, and all units read the new channels, or
     training could not begin with them.
 
     Args:
@@ -36,10 +37,7 @@ def widened(model: Model, size: Dimensions, random: np.random.Generator) -> Mode
         raise ValueError(f"{size} cannot hold {old}")
     kept = np.arange(old.channels)
     kept[1:] += size.channels - old.channels
-    fresh: dict[str, NDArray[np.float32]] = {}
-    for name, shape in size.shapes().items():
-        limit = (6 / sum(shape)) ** 0.5 if name in ("w1", "w2") else 0.0
-        fresh[name] = (limit * random.uniform(-1, 1, shape)).astype(np.float32)
+    fresh = initial_arrays(size, random)
     fresh["w2"][: old.hidden2] = 0
     return quantise(size, model.labels, placed(model.floats, kept, fresh), model.metadata)[0]
 

@@ -118,14 +118,3 @@ class TileNet(nn.Module):
         """Brings weights back into the range that the integer tile can hold."""
         for name, value in self.named_parameters():
             value.clamp_(-LARGEST[name] / SCALES[name], LARGEST[name] / SCALES[name])
-
-
-def initial_arrays(
-    dimensions: Dimensions, random: np.random.Generator, zero_last: bool = True
-) -> dict[str, NDArray[np.float32]]:
-    """Glorot-uniform weights and zero biases; the last layer zero, so that an untrained tile does nothing."""
-    arrays = {}
-    for name, shape in dimensions.shapes().items():
-        limit = 0.0 if name.startswith("b") or (name == "w3" and zero_last) else (6 / sum(shape)) ** 0.5
-        arrays[name] = (limit * random.uniform(-1, 1, shape)).astype(np.float32)
-    return arrays

@@ -15,13 +15,14 @@ from torch import Tensor
 
 from tilenca.base.errors import TilencaError
 from tilenca.model.file import Model
+from tilenca.model.initial import initial_arrays
 from tilenca.model.quantise import quantise
 from tilenca.shapes.batch import Batch
 from tilenca.training.checkpoint import damaged, read_checkpoint, write_checkpoint
 from tilenca.training.config import Config
 from tilenca.training.curriculum import Curriculum
 from tilenca.training.loss import GapGoal, Goal, agreed_targets, directions_of, loss_of, scores_of
-from tilenca.training.network import TileNet, initial_arrays
+from tilenca.training.network import TileNet
 from tilenca.training.pool import Pools
 from tilenca.training.pool_batch import Taken
 from tilenca.training.pool_refresh import mine_hard_examples, refresh_undisturbed
