@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from PIL import Image, ImageDraw
 from tilenca import cli
 from tilenca.base import paths
 from tilenca.shapes.file import load_task
-from tilenca.shapes.variant import TRAINED, split_of
+from tilenca.shapes.stretch import Rows
+from tilenca.shapes.variant import TRAINED, Variants, split_of
 
 
 def run(capsys: pytest.CaptureFixture[str], *words: str) -> str:
@@ -58,6 +60,22 @@ def test_variants_are_drawn_by_seed_and_are_those_of_training(capsys: pytest.Cap
     assert {label: len(some) for label, some in one.items()} == dict.fromkeys("0123456789", 3)
     assert all(split_of(tuple(grid.split("\n"))) == TRAINED for some in one.values() for grid in some)
     assert "8 may become" in run(capsys, "--vary", "2")
+
+
+def test_what_was_drawn_for_two_classes_is_left_out(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else the file could not be read again: no drawing may have two labels."""
+    some = Variants.some
+
+    def with_a_bar(self: Variants, label: str, *rest: Any) -> list[Rows]:
+        return [*some(self, label, *rest), ("#", "#", "#")] if label in "17" else some(self, label, *rest)
+
+    monkeypatch.setattr(Variants, "some", with_a_bar)
+    assert cli.main(["shapes", "--vary", "2", "--toml"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.count("[[shape]]") == 20
+    assert "1 drawing was drawn for two classes and left out" in printed.err
 
 
 def test_a_file_may_have_no_variants(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import argparse
 import json
 import shlex
 import shutil
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill
@@ -191,10 +192,15 @@ def _variants(drawings: Drawings, args: argparse.Namespace) -> dict[str, list[Ro
             "--vary out"
         )
     random, split = np.random.default_rng(args.seed), LAST if args.held_out else TRAINED
-    return {
+    found = {
         label: drawings.variants.some(label, args.vary, random, args.shapes, split)
         for label in drawings.labels
     }
+    classes = Counter(rows for some in found.values() for rows in set(some))
+    if doubtful := sum(count > 1 for count in classes.values()):
+        what = "1 drawing was" if doubtful == 1 else f"{doubtful} drawings were"
+        warn(f"note: {what} drawn for two classes and left out, as in training")
+    return {label: [rows for rows in some if classes[rows] == 1] for label, some in found.items()}
 
 
 def _problems(task: Task) -> list[str]:
