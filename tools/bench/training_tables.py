@@ -22,12 +22,14 @@ from tilenca.model.file import load_model
 DOCUMENT = paths.ROOT / "docs" / "TRAINING.md"
 MODELS = paths.ROOT / "models"
 WIDTHS = ("digits-40", "digits-64", "digits-drawn")  # trained by the same recipe
+HANDS = ("digits", "digits-wide")  # of any hand; the second goes on from the first
 TASKS = ("hex", "letters", "pentominoes")
 # Rows to show of a width or a task: a short name, the end of the row's name, and its steps.
 ROWS = {
     "5x4 @60": ("the tiles' own clocks", 60),
     "@1000": ("the tiles' own clocks", 1000),
     "12x10 @100": ("12x10", 100),
+    "held-out forms": ("held-out forms, 5x3 to 14x12", 100),
     "20x16 @200": ("20x16, never trained on", 200),
     "changes": ("changes to every other class at once", 60),
     "half of the messages lost": ("50 % of the messages lost, last one held", 60),
@@ -67,6 +69,7 @@ def digits() -> Iterator[list[str]]:
         "the paper's recipe",
         "`models/digits-drawn`",
         "`models/digits`",
+        "`models/digits-wide`",
         "target",
     ]
     for row in metrics_of("digits")["rows"]:
@@ -81,6 +84,7 @@ def digits() -> Iterator[list[str]]:
             by_paper(*place),
             share("digits-drawn", place),
             f"{row['share']:.3f}",
+            share("digits-wide", place),
             target,
         ]
 
@@ -122,6 +126,7 @@ def directions() -> Iterator[list[str]]:
 TABLES: dict[str, Callable[[], Iterator[list[str]]]] = {
     "digits": digits,
     "widths": lambda: compared(WIDTHS),
+    "hands": lambda: compared(HANDS),
     "tasks": lambda: compared(TASKS),
     "directions": directions,
 }
