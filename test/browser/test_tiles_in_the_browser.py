@@ -230,7 +230,8 @@ def test_surprises_happen(visit: Visit, server: PageServer) -> None:
 
 
 def test_it_comes_back_when_the_server_does(visit: Visit, firmware: Path) -> None:
-    visit.forgiven = ("WebSocket connection",)  # while there is no server
+    # While there is no server; a page that is still loading misses a file, too.
+    visit.forgiven = ("WebSocket connection", "net::ERR_CONNECTION_REFUSED")
     with page_server(firmware) as first:
         host, port = first.address
         visit.page.goto(f"{first.url}?shape=digits/7&speed=0.5&spread=0.1")

@@ -135,9 +135,8 @@ class EmulatedTile:
 
     def read_serial_timed(self) -> tuple[bytes, list[float]]:
         """Like `read_serial`, and for each byte the time in seconds at which it had arrived."""
-        data, arrived, count = b"", [], RECEIVE_CHUNK
-        while count == RECEIVE_CHUNK:
-            count = self._call("tile_receive", *self._inbox, RECEIVE_CHUNK)
+        data, arrived = b"", list[float]()
+        while count := self._call("tile_receive", *self._inbox, RECEIVE_CHUNK):
             data += bytes(library().ffi.buffer(self._inbox[0], count))
             arrived += numbers(self._inbox[1], count)
         return data, arrived
