@@ -81,7 +81,7 @@ def main() -> int:
             image = image_with(paths.MODELS / name)
             make(image.elf)
             started = time.perf_counter()
-            measured[name] = run_pairs(image, drawings_of(image), runs, args.seed)
+            measured[name] = run_pairs(image, drawings_of(image), runs, args.seed, UPDATES[-1] + 1)
             rate = runs / (time.perf_counter() - started)
             print(f"{name}: {rate:.2f} runs a second", file=sys.stderr)
     except TilencaError as error:

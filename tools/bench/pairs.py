@@ -175,8 +175,7 @@ def right_since(running: Emulation, size: Dimensions, period_ms: float) -> float
     """
     if not running.all_right:
         return math.inf
-    rate = 1 + np.array(running.ppm) * 1e-6
-    first_ms = np.array(running.switch_on_s) * 1000 + FIRST_MS / rate
+    rate, first_ms = _rates_and_firsts(np.array(running.ppm), np.array(running.switch_on_s))
     ends = [end for one, _, other, _ in running.cables for end in (one, other)]
     computing_ms = [cost.computing_ms(size, ends.count(tile)) for tile in range(len(rate))]
 
@@ -241,14 +240,20 @@ def _clocks(
     neighbours: NDArray[np.int64],
 ) -> Clocks:
     """The clocks that the emulated tiles had. The first step ends with the last tile's first update."""
-    rate = 1 + np.concatenate([run.ppm for run in tiles]) * 1e-6
-    power_ms = np.concatenate([run.switch_on_s for run in tiles]) * 1000
-    first = (power_ms + FIRST_MS / rate) / period_ms
+    ppm, switch_on_s = (np.concatenate([getattr(run, of) for run in tiles]) for of in ("ppm", "switch_on_s"))
+    rate, first_ms = _rates_and_firsts(ppm, switch_on_s)
+    first = first_ms / period_ms
     sizes = np.diff(np.append(starts, len(first)))
     first += 1 - times.ends - np.repeat(np.maximum.reduceat(first, starts), sizes)
     made = times.clocks(1 / rate, neighbours)
     start = float(np.floor((first - made.period).min()))
     return Clocks(first, made.period, made.latency, start, made.seed_latency, made.line)
+
+
+def _rates_and_firsts(ppm: Steps, switch_on_s: Steps) -> tuple[Steps, Steps]:
+    """(N,) how fast the clocks of N tiles run, and (N,) the ms at which their first updates begin."""
+    rate = 1 + ppm * 1e-6
+    return rate, switch_on_s * 1000 + FIRST_MS / rate
 
 
 def run_pairs(image: Image, drawings: Drawings, runs: int, seed: int, steps: int = STEPS) -> Pairs:

@@ -266,11 +266,13 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
     words += ["--recipe", args.recipe, "--seed", str(args.seed)]
     words += ["--seeds", str(args.seeds or recipe.seeds)]
     words += ["--iterations", str(args.iterations or recipe.iterations)]
-    if args.weights is not None:
+    if args.weights is None:
+        hidden, usual = args.hidden or recipe.hidden, usual_channels(recipe)
+    else:
         words += ["--weights", place(args.weights)]
-    if hidden := args.hidden or (args.weights is None and recipe.hidden):
+        hidden, usual = args.hidden, None
+    if hidden is not None:
         words += ["--hidden", str(hidden)]
-    usual = usual_channels(recipe) if args.weights is None else None
     for option, default in (("state", usual), ("device", "cpu"), ("validation_runs", None)):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]

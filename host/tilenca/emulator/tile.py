@@ -135,8 +135,9 @@ class EmulatedTile:
 
     def read_serial_timed(self) -> tuple[bytes, list[float]]:
         """Like `read_serial`, and for each byte the time in seconds at which it had arrived."""
-        data, arrived = b"", list[float]()
-        while count := self._call("tile_receive", *self._inbox, RECEIVE_CHUNK):
+        data, arrived, count = b"", list[float](), RECEIVE_CHUNK
+        while count == RECEIVE_CHUNK:
+            count = self._call("tile_receive", *self._inbox, RECEIVE_CHUNK)
             data += bytes(library().ffi.buffer(self._inbox[0], count))
             arrived += numbers(self._inbox[1], count)
         return data, arrived
@@ -267,9 +268,7 @@ class EmulatedTile:
         self._call("tile_halt")
 
     def step(self) -> bool:
-        """Executes one instruction, or enters one interrupt; the tile is halted afterwards.
-
-        The other tiles catch up.
+        """Executes one instruction, or enters one interrupt, and halts again; the other tiles catch up.
 
         Returns:
             False if it sleeps on after a second, or another tile has halted first.

@@ -20,8 +20,8 @@ def widened(model: Model, size: Dimensions, random: np.random.Generator) -> Mode
     """The same model with more channels behind the seed's, and with more hidden units.
 
     Its tiles show what they showed: the old units do not read the new ones, and the new channels stay zero.
-    The new units read everything by random weights, and all units read the new channels, or
-    training could not begin with them.
+    The new units read everything by random weights, and all units read the new channels, or training could
+    not begin with them.
 
     Args:
         model: any.
