@@ -103,6 +103,7 @@ def test_what_cannot_be_done_is_refused_in_one_line(
         ["--state", "1"],
         ["--hidden", "128"],
         ["--iterations", "0"],
+        ["--learning-rate", "0"],
         ["--validation-runs", "x"],
         ["--seed", "-1"],
     ],

@@ -20,8 +20,8 @@ def arguments(out: Path, *more: str) -> argparse.Namespace:
 
 def test_arguments_change_the_recipe_and_the_network(tmp_path: Path) -> None:
     more = ("--iterations", "7", "--hidden", "24", "--state", "16", "--seed", "3", "--seeds", "2")
-    plan = make_plan(arguments(tmp_path, *more))
-    assert plan.recipe.iterations == 7
+    plan = make_plan(arguments(tmp_path, *more, "--learning-rate", "2e-4"))
+    assert (plan.recipe.iterations, plan.recipe.learning_rate) == (7, 2e-4)
     assert (plan.dimensions.channels, plan.dimensions.hidden1, plan.dimensions.hidden2) == (16, 24, 24)
     assert plan.seeds == (3, 4)
     assert plan.task.labels == (*"0123456789", "-")

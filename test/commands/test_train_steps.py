@@ -106,12 +106,13 @@ def test_seeds_share_the_processors_and_a_worker_has_one(two_shapes: Path, tmp_p
 def test_the_command_of_a_model_has_what_decides_it_and_nothing_else(
     two_shapes: Path, tmp_path: Path
 ) -> None:
-    args = arguments(two_shapes, tmp_path, "--state", "24", "--jobs", "3", "--force")
+    more = ("--state", "24", "--jobs", "3", "--force", "--learning-rate", "2e-4")
+    args = arguments(two_shapes, tmp_path, *more)
     words = training_command(args, str).split()
     assert words[:6] == ["tilenca", "train", "--shapes", str(two_shapes), "--out", str(tmp_path)]
     assert words[6:] == [
         *("--recipe", "smoke", "--seed", "1", "--seeds", "1", "--iterations", "40", "--hidden", "12"),
-        *("--state", "24"),
+        *("--learning-rate", "0.0002", "--state", "24"),
     ]
 
 

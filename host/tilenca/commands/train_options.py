@@ -3,7 +3,7 @@
 import argparse
 
 from tilenca.base.shipped import model_folder
-from tilenca.commands.arguments import add_scheduler_argument, count, seed, whole
+from tilenca.commands.arguments import add_scheduler_argument, count, number, seed, whole
 from tilenca.model.file import DEFAULT_CHANNELS, MAX_WIDTH
 from tilenca.protocol.constants import MAX_CHANNELS
 from tilenca.training.recipes import RECIPES
@@ -38,6 +38,12 @@ def add_training_arguments(parser: argparse.ArgumentParser, usual: str) -> None:
     )
     add_scheduler_argument(where.add_argument)
     add("--iterations", type=count, metavar="N", help=f"optimiser steps (by the recipe: {ITERATIONS})")
+    add(
+        "--learning-rate",
+        type=number(1e-6, 0.1),
+        metavar="R",
+        help="Adam's at the beginning (by the recipe; smaller steps for --weights that are good already)",
+    )
     add(
         "--state",
         type=whole(2, MAX_CHANNELS),

@@ -66,6 +66,8 @@ def make_plan(args: argparse.Namespace) -> TrainingPlan:
     recipe = find_recipe(args.recipe)
     if args.iterations is not None:
         recipe = replace(recipe, iterations=args.iterations)
+    if args.learning_rate is not None:
+        recipe = replace(recipe, learning_rate=args.learning_rate)
     initial = None if args.weights is None else load_model(args.weights)
     if initial is not None and recipe.directions and not initial.dimensions.directions:
         initial = with_directions(initial)

@@ -273,7 +273,12 @@ def training_command(args: argparse.Namespace, place: Callable[[Path], str] = pl
         hidden, usual = args.hidden, None
     if hidden is not None:
         words += ["--hidden", str(hidden)]
-    for option, default in (("state", usual), ("device", "cpu"), ("validation_runs", None)):
+    for option, default in (
+        ("learning_rate", None),
+        ("state", usual),
+        ("device", "cpu"),
+        ("validation_runs", None),
+    ):
         if (value := getattr(args, option)) not in (None, default):
             words += [f"--{option.replace('_', '-')}", str(value)]
     return shlex.join(words)
