@@ -84,3 +84,12 @@ def test_design_has_the_rows_of_each_model() -> None:
     assert section.count("| gap, points |") == len(gap.MODELS)
     widths = {line.count("|") for line in section.splitlines() if line.startswith("|")}
     assert widths == {len(gap.UPDATES) + 4}
+
+
+def test_runs_are_one_number_or_one_for_each_model(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["gap", "--runs", "1", "2", "3"])
+    with pytest.raises(SystemExit):
+        gap.main()
+    assert "one number, or one for each of 2 models" in capsys.readouterr().err

@@ -13,7 +13,7 @@ from tilenca.emulator.greeting import firmware_settings
 from tilenca.model.file import load_model
 from tilenca.shapes.file import Shape
 from tilenca.simulator.simulator import MIXED
-from tilenca.sweep.emulated import Image, plugged, run_emulated, step_of
+from tilenca.sweep.emulated import Image, plugged, run_emulated
 
 pytestmark = pytest.mark.skipif(
     not paths.FIRMWARE_ELF.exists(), reason="run `make setup` to build the firmware"
@@ -36,10 +36,6 @@ def test_a_run_that_ends_well(image: Image) -> None:
     assert 60 <= run.updates <= 90
     assert sum(looks) > 20
     assert run_emulated(image, BAR, SETTINGS) == run
-
-
-def test_a_step_ends_with_an_update_of_the_last_tile_although_later_ones_take_longer() -> None:
-    assert [step_of(after_s, 0.02) for after_s in (0.0, 0.003, 0.006, 0.023, 0.026)] == [1, 1, 2, 2, 3]
 
 
 def test_tiles_without_power_are_not_asked(image: Image) -> None:

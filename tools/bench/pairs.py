@@ -4,7 +4,6 @@ The drawing, the clocks and the moments of power are the same. What is left betw
 simulator does not know. `bench.gap` and `bench.unseen` tell of such pairs.
 """
 
-import math
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,10 +19,8 @@ from tilenca.commands.own_firmware import image_to_write
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.greeting import firmware_settings
 from tilenca.emulator.side_by_side import run_side_by_side
-from tilenca.emulator.types import last_begun
 from tilenca.fleet.build import build
-from tilenca.model import cost
-from tilenca.model.file import Dimensions, Model, load_model
+from tilenca.model.file import Model, load_model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
 from tilenca.shapes.batch import Drawings, load_drawings
@@ -31,14 +28,13 @@ from tilenca.simulator.chance import NO_SWITCHES
 from tilenca.simulator.engine import FastEngine
 from tilenca.simulator.rollout_library import DARK, NOBODY, Clocks, CompiledRollout, Setup
 from tilenca.simulator.simulator import Trajectory
-from tilenca.simulator.tile_times import STEP_ENDS_MS, TileTimes, tile_times
+from tilenca.simulator.tile_times import TileTimes, tile_times
 from tilenca.sweep.emulated import Image, run_emulated
+from tilenca.sweep.steps import clock_rates, first_updates_ms
 from tilenca.views.progress import show_progress
 
 STEPS = 31
 SEEDS = 1_000_000  # from one seed of the benchmark to the next
-# From power to the moment at which a tile's first update reads its neighbours' messages, by its own clock.
-FIRST_MS = 183.5
 DEVIATIONS = 1.96  # either way, of a 95 % interval
 RULE_OF_THREE = 3.0  # what was not seen in N runs happens in 3 / N of them at most, at 95 %
 
@@ -53,7 +49,7 @@ class EmulatedTiles:
         drawing: its number.
         ppm: (N,) the errors of their clocks.
         switch_on_s: (N,) when each got power.
-        converged_at: the step from which all tiles stay right, infinite for none; see `right_since`.
+        converged_at: the step from which all tiles stay right, infinite for none; see `tilenca.sweep.steps`.
     """
 
     drawing: int
@@ -140,18 +136,16 @@ def emulate(
 
     def run(number: int, stopped: threading.Event) -> EmulatedTiles:
         drawing = number % len(drawings)
-        found: list[EmulatedTiles] = []
+        clocks: dict[str, tuple[float, ...]] = {}
 
         def look(running: Emulation, _: list[Heard]) -> None:
             if stopped.is_set():
                 raise KeyboardInterrupt
-            if running.done():
-                since = right_since(running, image.model.dimensions, period_of(image))
-                found.append(EmulatedTiles(drawing, tuple(running.ppm), tuple(running.switch_on_s), since))
+            clocks.update(ppm=tuple(running.ppm), switch_on_s=tuple(running.switch_on_s))
 
         settings = EmulationSettings(updates=steps, seed=seed * SEEDS + number)
-        run_emulated(image, drawings.shapes[drawing], settings, look)
-        return found[0]
+        done = run_emulated(image, drawings.shapes[drawing], settings, look)
+        return EmulatedTiles(drawing, **clocks, converged_at=done.converged_at)
 
     done = []
     with show_progress() as tell:
@@ -159,33 +153,6 @@ def emulate(
             done.append(result)
             tell(image.folder.name, (number + 1) / runs, f"run {number + 1} of {runs}")
     return done
-
-
-def right_since(running: Emulation, size: Dimensions, period_ms: float) -> float:
-    """The step from which all tiles stay right, by the clocks that the simulator has, too; infinite for none.
-
-    A display tells which update it shows, since it follows the update's beginning by the time of computing,
-    which is known to a fraction of a period. So a step ends at the same moment of the same clocks on both
-    sides.
-
-    Args:
-        running: a run that has ended.
-        size: of the model.
-        period_ms: of an update.
-    """
-    if not running.all_right:
-        return math.inf
-    rate, first_ms = _rates_and_firsts(np.array(running.ppm), np.array(running.switch_on_s))
-    ends = [end for one, _, other, _ in running.cables for end in (one, other)]
-    computing_ms = [cost.computing_ms(size, ends.count(tile)) for tile in range(len(rate))]
-
-    def right(segments: int) -> bool:
-        return running.label(segments) == running.shape.label
-
-    shown_ms = [1000 * last_begun(tile.display_changes, right) for tile in running.array]
-    updates = np.round((np.array(shown_ms) - computing_ms - first_ms) * rate / period_ms)
-    since_ms = float((first_ms + updates * period_ms / rate).max() - first_ms.max())
-    return 1 + max(0, math.ceil((since_ms - STEP_ENDS_MS) / period_ms))
 
 
 def simulate(
@@ -241,19 +208,13 @@ def _clocks(
 ) -> Clocks:
     """The clocks that the emulated tiles had. The first step ends with the last tile's first update."""
     ppm, switch_on_s = (np.concatenate([getattr(run, of) for run in tiles]) for of in ("ppm", "switch_on_s"))
-    rate, first_ms = _rates_and_firsts(ppm, switch_on_s)
-    first = first_ms / period_ms
+    rate = clock_rates(ppm)
+    first = first_updates_ms(rate, switch_on_s) / period_ms
     sizes = np.diff(np.append(starts, len(first)))
     first += 1 - times.ends - np.repeat(np.maximum.reduceat(first, starts), sizes)
     made = times.clocks(1 / rate, neighbours)
     start = float(np.floor((first - made.period).min()))
     return Clocks(first, made.period, made.latency, start, made.seed_latency, made.line)
-
-
-def _rates_and_firsts(ppm: Steps, switch_on_s: Steps) -> tuple[Steps, Steps]:
-    """(N,) how fast the clocks of N tiles run, and (N,) the ms at which their first updates begin."""
-    rate = 1 + ppm * 1e-6
-    return rate, switch_on_s * 1000 + FIRST_MS / rate
 
 
 def run_pairs(image: Image, drawings: Drawings, runs: int, seed: int, steps: int = STEPS) -> Pairs:

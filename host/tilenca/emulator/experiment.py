@@ -255,12 +255,12 @@ class Emulation:
         return max(0.0, moment_s - max(time_s for time_s in first_s if time_s is not None))
 
     def _agreed_moment_s(self) -> float | None:
-        if not self.all_right:
-            return None
-        displays = (self.array[index].display_changes for index in self._standing())
-        return max(
-            last_begun(changes, lambda lit: self.label(lit) == self.shape.label) for changes in displays
-        )
+        return max(self.right_from_s(self._standing())) if self.all_right else None
+
+    def right_from_s(self, tiles: Sequence[int]) -> list[float]:
+        """When each of some tiles, which are right now, began to show the shape's label."""
+        changes = (self.array[tile].display_changes for tile in tiles)
+        return [last_begun(each, lambda lit: self.label(lit) == self.shape.label) for each in changes]
 
     def agreed_at_update(self) -> int | None:
         """The updates of the least advanced tile when all agreed; None if they do not."""

@@ -9,13 +9,13 @@ from pathlib import Path
 from tilenca.base.errors import BuildError
 from tilenca.emulator.experiment import Emulation, EmulationSettings
 from tilenca.emulator.fault_spec import parse as parse_fault
-from tilenca.emulator.voice import TELLING_MS
 from tilenca.model.file import Model
 from tilenca.protocol.constants import DEFAULT_PERIOD_MS
 from tilenca.protocol.line_reader import Heard
 from tilenca.protocol.settings import Settings
 from tilenca.shapes.file import Shape
 from tilenca.simulator.simulator import MIXED
+from tilenca.sweep.steps import right_since
 
 PLUGS = ("again", "new")  # how a tile is plugged in while the others run
 # The others have agreed by then; what was pulled is away for long enough that all have noticed.
@@ -49,8 +49,7 @@ class EmulatedRun:
 
     Attributes:
         right: share of the tiles with power that showed the right class at the end.
-        converged_at: step from which all were right to the end; infinite for none. A step is a period, and
-            the first one ends with the first update of the tile that was switched on last.
+        converged_at: step from which all were right to the end, see `right_since`; infinite for none.
         agreed_s: seconds from when the last tile was switched on until all were right to the end; the same.
         answer: the class that all showed at the end, negative where they differed.
         updates: that the tiles did in all.
@@ -86,31 +85,18 @@ def run_emulated(
 
     with emulation.array:
         emulation.run(on_slice)
-        agreed_s, after_s = emulation.agreed_at_s(), emulation.agreed_after_update_s()
-        period_s = (emulation.period_ms or DEFAULT_PERIOD_MS) / 1000
+        agreed_s = emulation.agreed_at_s()
+        period_ms = emulation.period_ms or DEFAULT_PERIOD_MS
         labels = list(image.model.labels)
         answers = set(emulation.answers())
         known = len(answers) == 1 and answers <= set(labels)
         return EmulatedRun(
             emulation.share_right(),
-            math.inf if after_s is None else step_of(after_s, period_s),
+            right_since(emulation, image.model.dimensions, period_ms),
             math.inf if agreed_s is None else agreed_s,
             labels.index(answers.pop()) if known else MIXED,
             emulation.updates_done(),
         )
-
-
-def step_of(after_s: float, period_s: float) -> int:
-    """The step, from 1, that ends with an update of the last tile, as in the simulator.
-
-    Args:
-        after_s: since the last tile has told of its first update.
-        period_s: of an update.
-
-    A tile computes longer when it knows more of the others, so a later update of the same tile may show up
-    to 3 ms later in its period than the first one did.
-    """
-    return 1 + math.ceil(max(0.0, after_s - TELLING_MS / 1000) / period_s)
 
 
 def plugged(

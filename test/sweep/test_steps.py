@@ -1,18 +1,15 @@
-"""Emulated tiles and the simulator count steps by the same clocks."""
+"""Steps of emulated tiles are those of the simulator."""
 
 import math
 from types import SimpleNamespace
 from typing import cast
 
-import pytest
-
-from bench import gap
-from bench.pairs import FIRST_MS, right_since
 from tilenca.emulator.experiment import Emulation
 from tilenca.emulator.types import DisplayChange
 from tilenca.model import cost
 from tilenca.model.file import Dimensions
 from tilenca.shapes.glyphs import GLYPHS, label_of_glyph
+from tilenca.sweep.steps import FIRST_MS, right_since
 
 SIZE, PERIOD_MS = Dimensions(24, 96, 96), 20
 
@@ -24,7 +21,7 @@ def ended(*updates: int, ppm: tuple[float, ...], on_s: tuple[float, ...], right:
     for one, _, other, _ in cables:
         ends[one] += 1
         ends[other] += 1
-    tiles = []
+    tiles: list[SimpleNamespace] = []
     for update, rate, begin_s, neighbours in zip(
         updates, [1 + p * 1e-6 for p in ppm], on_s, ends, strict=True
     ):
@@ -32,12 +29,14 @@ def ended(*updates: int, ppm: tuple[float, ...], on_s: tuple[float, ...], right:
             begin_s + (FIRST_MS + update * PERIOD_MS + cost.computing_ms(SIZE, neighbours)) / rate / 1000
         )
         changes = [DisplayChange(0.1, GLYPHS["7"]), DisplayChange(shown_s, GLYPHS["4"])]
-        tiles.append(SimpleNamespace(display_changes=changes))
+        tiles.append(SimpleNamespace(display_changes=changes, index=len(tiles), powered=True))
     running = SimpleNamespace(
         all_right=right, ppm=ppm, switch_on_s=on_s, cables=cables, label=label_of_glyph, array=tiles
     )
     running.shape = SimpleNamespace(label="4")
-    return cast(Emulation, running)
+    emulation = cast(Emulation, running)
+    running.right_from_s = lambda standing: Emulation.right_from_s(emulation, standing)
+    return emulation
 
 
 def test_a_step_ends_with_an_update_of_the_last_tile() -> None:
@@ -62,10 +61,8 @@ def test_tiles_that_are_not_all_right_never_are() -> None:
     assert right_since(ended(1, ppm=(0.0,), on_s=(0.0,), right=False), SIZE, PERIOD_MS) == math.inf
 
 
-def test_runs_are_one_number_or_one_for_each_model(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("sys.argv", ["gap", "--runs", "1", "2", "3"])
-    with pytest.raises(SystemExit):
-        gap.main()
-    assert "one number, or one for each of 2 models" in capsys.readouterr().err
+def test_tiles_without_power_are_not_asked() -> None:
+    tiles = ended(3, 9, ppm=(0.0, 0.0), on_s=(0.5, 0.6))
+    assert right_since(tiles, SIZE, PERIOD_MS) == 10
+    tiles.array[1].powered = False
+    assert right_since(tiles, SIZE, PERIOD_MS) == 4
