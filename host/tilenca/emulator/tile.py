@@ -1,5 +1,6 @@
 """One emulated tile, as eyes, fingers, cables and a debugger reach it."""
 
+from array import array as packed
 from typing import Any
 
 from tilenca.base.errors import UsageError
@@ -133,13 +134,13 @@ class EmulatedTile:
         """Everything the tile has sent on its USB serial since the last read."""
         return self.read_serial_timed()[0]
 
-    def read_serial_timed(self) -> tuple[bytes, list[float]]:
+    def read_serial_timed(self) -> "tuple[bytes, packed[float]]":
         """Like `read_serial`, and for each byte the time in seconds at which it had arrived."""
-        data, arrived, count = b"", list[float](), RECEIVE_CHUNK
+        data, arrived, count = b"", packed("d"), RECEIVE_CHUNK
         while count == RECEIVE_CHUNK:
             count = self._call("tile_receive", *self._inbox, RECEIVE_CHUNK)
             data += bytes(library().ffi.buffer(self._inbox[0], count))
-            arrived += numbers(self._inbox[1], count)
+            arrived.frombytes(library().ffi.buffer(self._inbox[1], arrived.itemsize * count))
         return data, arrived
 
     def read_eeprom(self, address: int = 0, count: int = EEPROM_BYTES) -> bytes:
