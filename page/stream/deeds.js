@@ -91,8 +91,25 @@ const deedWords = (deed) => (Object.hasOwn(WORDS, deed.do) ? WORDS[deed.do](deed
 const SAME_S = 1e-4; // what was done while time stood is one
 const MOST_WORDS = 2;
 
-/** The deeds of each moment as one, in words; those of the beginning are none. @param {Deed[]} deeds */
+/** @typedef {{time: number, words: string}} Moment */
+
+const told = /** @type {WeakMap<Deed[], Moment[]>} */ (new WeakMap());
+
+/**
+ * The deeds of each moment as one, in words; those of the beginning are none. Every frame asks for them.
+ * @param {Deed[]} deeds a list that stays as it is
+ * @returns {Moment[]}
+ */
 export function deedMoments(deeds) {
+  const known = told.get(deeds);
+  if (known) return known;
+  const found = momentsOf(deeds);
+  told.set(deeds, found);
+  return found;
+}
+
+/** @param {Deed[]} deeds @returns {Moment[]} */
+function momentsOf(deeds) {
   /** @type {{time: number, all: string[]}[]} */
   const moments = [];
   for (const { time, deed } of deeds) {
