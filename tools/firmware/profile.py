@@ -28,7 +28,7 @@ START_S = 1.0
 LEAST_SAID_S = 2.5  # a tile tells its times every second
 SAMPLE_S = 16e-6  # the shortest time an array runs
 FOLDER = paths.BUILD / "account"
-EXTRA_SCRIPT = paths.ROOT / "tools" / "links" / "debug_info.py"
+EXTRA_SCRIPT = paths.ROOT / "tools" / "firmware" / "debug_info.py"
 
 # Cycles before an interrupt's first instruction: its entry and the jump there. And those of its return.
 ENTRY, RETURN = 5 + 3, 5
