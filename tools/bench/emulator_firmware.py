@@ -9,6 +9,7 @@ import subprocess
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from statistics import median
 
 from bench.figures import note, of_rounds
 from bench.reference import COMMIT, host_of_reference, native
@@ -95,18 +96,22 @@ class Against:
         note_ratios(f"{WORDS[name]}, against {COMMIT}", self._theirs_s, self._ours_s)
 
     def row(self, name: str) -> tuple[str, str, str]:
-        """The ratio of their best processor times."""
+        """The ratio of their processor times: the median of the rounds, as in the history."""
         what = f"firmware, {WORDS[name]}, processor time at {COMMIT}"
         if self._before is None:
             return what, "not measured: this clone has no history", "3.5 times as much"
-        return what, f"{min(self._theirs_s) / min(self._ours_s):.2f} times as much", "3.5 times as much"
+        return what, f"{median(ratios(self._theirs_s, self._ours_s)):.2f} times as much", "3.5 times as much"
 
 
 def note_ratios(name: str, slow_s: Sequence[float], fast_s: Sequence[float]) -> None:
     """Keeps how many times the second is as fast as the first, of rounds in which they took turns."""
     if len(slow_s) > 1:
-        ratios = [slow / fast for slow, fast in zip(slow_s, fast_s, strict=True)]
-        note(of_rounds(f"emulator: {name}", ratios, "times as fast"))
+        note(of_rounds(f"emulator: {name}", ratios(slow_s, fast_s), "times as fast"))
+
+
+def ratios(slow_s: Sequence[float], fast_s: Sequence[float]) -> list[float]:
+    """(R,) how many times the second is as fast as the first in each of R rounds."""
+    return [slow / fast for slow, fast in zip(slow_s, fast_s, strict=True)]
 
 
 def block(rows: int, columns: int) -> str:
