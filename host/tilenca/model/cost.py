@@ -31,7 +31,7 @@ OTHER_SRAM_BYTES = 2888
 # The share of each layer's inputs that is not zero: with four neighbours, the models that ship have no more.
 # An update without a zero takes some of HEAD_ROOM.
 ACTIVE = (1.0, 0.6, 0.4)
-# The time of an update with so many, among the first sixty of a tile, which know less.
+# What one of the first sixty updates of a tile takes of the time for so many, on average: those know less.
 AVERAGE = 0.955
 
 # Cycles awake of a tile with four neighbours, all told: network, links, display, telemetry. Measured on the
