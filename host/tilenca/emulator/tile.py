@@ -1,6 +1,7 @@
 """One emulated tile, as eyes, fingers, cables and a debugger reach it."""
 
 from array import array as packed
+from collections.abc import Sequence
 from typing import Any
 
 from tilenca.base.errors import UsageError
@@ -134,7 +135,7 @@ class EmulatedTile:
         """Everything the tile has sent on its USB serial since the last read."""
         return self.read_serial_timed()[0]
 
-    def read_serial_timed(self) -> "tuple[bytes, packed[float]]":
+    def read_serial_timed(self) -> tuple[bytes, Sequence[float]]:
         """Like `read_serial`, and for each byte the time in seconds at which it had arrived."""
         data, arrived, count = b"", packed("d"), RECEIVE_CHUNK
         while count == RECEIVE_CHUNK:
@@ -216,8 +217,7 @@ class EmulatedTile:
 
     def mark(self, place: str | int, on: bool = True) -> None:
         """Notes every time a function, or the instruction at a byte address of flash, begins."""
-        address = self._array.code_address(place)
-        self._call("tile_set_mark", address, on)
+        self._call("tile_set_mark", self._array.code_address(place), on)
 
     def marks(self) -> list[Mark]:
         """The notes since the last call. Cycles between two marks are the difference of theirs."""
