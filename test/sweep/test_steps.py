@@ -35,7 +35,8 @@ def ended(*updates: int, ppm: tuple[float, ...], on_s: tuple[float, ...], right:
     )
     running.shape = SimpleNamespace(label="4")
     emulation = cast(Emulation, running)
-    running.right_from_s = lambda standing: Emulation.right_from_s(emulation, standing)
+    running.standing = lambda: Emulation.standing(emulation)
+    running.right_from_s = lambda tiles: Emulation.right_from_s(emulation, tiles)
     return emulation
 
 

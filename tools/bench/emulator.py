@@ -17,6 +17,7 @@ from pathlib import Path
 
 from bench import emulator_firmware, python_share
 from bench.publish import publish
+from bench.reference import COMMIT
 from tilenca.base.paths import FIRMWARE_ELF, ROOT
 from tilenca.base.sides import EAST, WEST
 from tilenca.emulator import Array, Link
@@ -148,7 +149,8 @@ def main() -> int:
         firmware = emulator_firmware.measure(args.rounds, FIRMWARE_ELF, simavr(place))
         section = table([*firmware, *python_share.measure(args.rounds), *measure(args.rounds, place)])
     cores = emulator_firmware.cores()
-    section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; other programs may have run meanwhile."
+    section += f"\n\nBest of {args.rounds} rounds, on {cores} cores; the processor times at {COMMIT} and "
+    section += "Python's share are medians. Other programs may have run meanwhile."
     publish(section, args.write, BEGIN, END)
     return 0
 

@@ -34,7 +34,7 @@ from tilenca.views.tiles import Picture, beside
 
 PLAIN_WIDTH = 80
 MOST_NAMED = 8  # drawings in a note
-LONG_SLICE_S = 0.5  # where nobody looks sooner: Python takes half of the time
+LONG_SLICE_S = 0.5  # where nobody looks sooner: fewer calls for the same lines
 AFTERWARDS_S = 2  # that the tiles of an example have after a fault
 
 # Lays out one shape in tiles.

@@ -173,7 +173,7 @@ class Emulation:
 
     def fewest_updates(self) -> int:
         """The updates of the least advanced tile with power."""
-        return min(map(self._updates, self._standing()), default=0)
+        return min(map(self._updates, self.standing()), default=0)
 
     def done(self) -> bool:
         """Whether it has run for as long as its settings ask."""
@@ -188,7 +188,7 @@ class Emulation:
         limit_s = self._limit_s()
         while not self.done():
             if self.array.time_s > limit_s:
-                slowest = min(self._standing(), key=self._updates, default=0)
+                slowest = min(self.standing(), key=self._updates, default=0)
                 done = self._updates(slowest)
                 about = f"shape '{self.shape.name}': tile {slowest + 1} reported {done} updates"
                 unread = "" if done else "; one that hangs, or a clock 4 % off, is not heard"
@@ -204,7 +204,7 @@ class Emulation:
         boot_s = self.settings.boot_spread_s + (BOOTLOADER_S if self.settings.bootloader else 0.0)
         return boot_s + PATIENCE * expected_s + PATIENCE_S
 
-    def _standing(self) -> list[int]:
+    def standing(self) -> list[int]:
         """The tiles that have power; the others do not count."""
         return [tile.index for tile in self.array if tile.powered]
 
@@ -213,7 +213,7 @@ class Emulation:
 
     def without_update(self) -> int:
         """How many tiles with power have not reported an update."""
-        return sum(self._updates(index) == 0 for index in self._standing())
+        return sum(self._updates(index) == 0 for index in self.standing())
 
     def updates_done(self) -> int:
         """The updates that all tiles together have reported."""
@@ -234,7 +234,7 @@ class Emulation:
 
     def answers(self) -> list[str]:
         """The characters that the displays of the tiles with power show now."""
-        return [self.shown(self.array[index]) for index in self._standing()]
+        return [self.shown(self.array[index]) for index in self.standing()]
 
     @property
     def all_right(self) -> bool:
@@ -249,13 +249,13 @@ class Emulation:
     def agreed_after_update_s(self) -> float | None:
         """Time from the first update of the last tile until all tiles stay right; None if they do not."""
         moment_s = self._agreed_moment_s()
-        first_s = [self._voices[index].first_update_s for index in self._standing()]
+        first_s = [self._voices[index].first_update_s for index in self.standing()]
         if moment_s is None or None in first_s:
             return None
         return max(0.0, moment_s - max(time_s for time_s in first_s if time_s is not None))
 
     def _agreed_moment_s(self) -> float | None:
-        return max(self.right_from_s(self._standing())) if self.all_right else None
+        return max(self.right_from_s(self.standing())) if self.all_right else None
 
     def right_from_s(self, tiles: Sequence[int]) -> list[float]:
         """When each of some tiles, which are right now, began to show the shape's label."""
@@ -268,7 +268,7 @@ class Emulation:
         if moment_s is None:
             return None
         return min(
-            self._voices[index].updates_at(moment_s, 1 + self.ppm[index] * 1e-6) for index in self._standing()
+            self._voices[index].updates_at(moment_s, 1 + self.ppm[index] * 1e-6) for index in self.standing()
         )
 
     def report(self, wall_s: float) -> dict[str, Any]:

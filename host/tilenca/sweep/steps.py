@@ -41,7 +41,7 @@ def right_since(running: Emulation, size: Dimensions, period_ms: float) -> float
     """
     if not running.all_right:
         return math.inf
-    standing = [tile.index for tile in running.array if tile.powered]
+    standing = running.standing()
     rate = clock_rates(np.array(running.ppm)[standing])
     first_ms = first_updates_ms(rate, np.array(running.switch_on_s)[standing])
     ends = [end for one, _, other, _ in running.cables for end in (one, other)]
